@@ -1,0 +1,254 @@
+//! Trees compiled to flat programs.
+
+use crate::field::{Aabb, Field, Sampler};
+use crate::leaf::{self, Leaf, even_scale};
+use crate::node::{Node, Shape};
+use crate::operator::Operator;
+use crate::warp::Warp;
+use crate::warp_map::{AffineWarp, BendMap, TaperMap, TwistMap, WarpMap};
+use glam::{DAffine3, Mat3};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::sampler::TreeSampler;
+
+/// One operation; its operands follow each other in an arena of the same type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Instr {
+    pub op: Op,
+    pub first: u32,
+    pub count: u32,
+}
+
+/// What an [`Instr`] does with its operands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Op {
+    /// 0 everywhere.
+    Empty,
+    /// The leaf of this number.
+    Leaf(u32),
+    Union,
+    Intersection,
+    /// The first without the others.
+    Difference,
+    /// With Ricci's exponent; so the two below.
+    Blend(f32),
+    BlendIntersection(f32),
+    BlendDifference(f32),
+    /// Point primitives come first.
+    Sum,
+    /// In the frame of this number.
+    GradientBlend(u32),
+    /// The warp of this number.
+    Warp(u32),
+}
+
+impl Instr {
+    pub const EMPTY: Self = Self { op: Op::Empty, first: 0, count: 0 };
+
+    /// Where the operands stand.
+    pub fn operands(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// A node compiled for evaluation: the [`Field`] of everything below it that is neither muted nor
+/// construction.
+///
+/// Affine warps are folded into the leaves. Cost of making one: O(nodes).
+#[derive(Debug)]
+pub struct Tree {
+    pub(crate) leaves: Vec<Leaf>,
+    pub(crate) warps: Vec<WarpMap>,
+    /// From gradients in the space of evaluation to those in a gradient blend's own; `None` if it is at most
+    /// turned and scaled evenly, which angles do not notice.
+    pub(crate) frames: Vec<Option<Mat3>>,
+    pub(crate) arena: Vec<Instr>,
+    pub(crate) root: Instr,
+    support: Aabb,
+    /// Evaluations of a primitive at a point so far, by samplers that are gone.
+    pub(crate) evaluations: AtomicU64,
+}
+
+impl Tree {
+    /// Compiles the tree below and including `node`, which must have passed the checks of its parameters.
+    pub fn new(node: &Node) -> Self {
+        let mut tree = Self {
+            leaves: Vec::new(),
+            warps: Vec::new(),
+            frames: Vec::new(),
+            arena: Vec::new(),
+            root: Instr::EMPTY,
+            support: support(node),
+            evaluations: AtomicU64::new(0),
+        };
+        tree.root = tree.compile(node, &DAffine3::IDENTITY);
+        tree
+    }
+
+    /// How often a primitive was evaluated at a point, by all samplers that are gone.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations.load(Ordering::Relaxed)
+    }
+
+    /// How many primitives take part.
+    pub fn primitives(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// Compiles a node whose space is reached by `node_from_world` from that of evaluation.
+    fn compile(&mut self, node: &Node, node_from_world: &DAffine3) -> Instr {
+        if !node.is_heard() {
+            return Instr::EMPTY;
+        }
+        match &node.shape {
+            Shape::Primitive(primitive) => {
+                self.leaves.push(Leaf::new(primitive, node_from_world));
+                Instr { op: Op::Leaf(self.leaves.len() as u32 - 1), first: 0, count: 0 }
+            }
+            Shape::Warp(warp, child) => self.compile_warp(warp, child, node_from_world),
+            Shape::Operator(operator, children) => {
+                let heard = children.iter().filter(|child| child.is_heard());
+                let operands: Vec<Instr> = heard.map(|child| self.compile(child, node_from_world)).collect();
+                let minuend_muted = children.first().is_none_or(|first| !first.is_heard());
+                self.compile_operator(*operator, operands, minuend_muted, node_from_world)
+            }
+        }
+    }
+
+    fn compile_warp(&mut self, warp: &Warp, child: &Node, node_from_world: &DAffine3) -> Instr {
+        if let Some(parent_from_child) = warp.parent_from_child() {
+            let rows = DAffine3 {
+                matrix3: parent_from_child.matrix3.as_dmat3(),
+                translation: parent_from_child.translation.as_dvec3(),
+            };
+            return self.compile(child, &(rows.inverse() * *node_from_world));
+        }
+        let map = warp_map(warp);
+        // What lies between this space and that of evaluation happens before the warp.
+        let between = *node_from_world != DAffine3::IDENTITY;
+        let inner = self.compile(child, &DAffine3::IDENTITY);
+        if inner.op == Op::Empty {
+            return Instr::EMPTY;
+        }
+        let warped = self.push(Op::Warp(self.warps.len() as u32), [inner]);
+        self.warps.push(map);
+        if !between {
+            return warped;
+        }
+        let outer = self.push(Op::Warp(self.warps.len() as u32), [warped]);
+        self.warps.push(WarpMap::Affine(AffineWarp::new(node_from_world)));
+        outer
+    }
+
+    fn compile_operator(
+        &mut self,
+        operator: Operator,
+        mut operands: Vec<Instr>,
+        minuend_muted: bool,
+        node_from_world: &DAffine3,
+    ) -> Instr {
+        let cuts = matches!(operator, Operator::Difference | Operator::BlendDifference(_));
+        if operands.is_empty() || cuts && (minuend_muted || operands[0].op == Op::Empty) {
+            return Instr::EMPTY;
+        }
+        let meets = matches!(operator, Operator::Intersection | Operator::BlendIntersection(_));
+        if meets && operands.iter().any(|operand| operand.op == Op::Empty) {
+            return Instr::EMPTY;
+        }
+        operands.retain(|operand| operand.op != Op::Empty);
+        match operands[..] {
+            [] => return Instr::EMPTY,
+            [only] => return only,
+            _ => {}
+        }
+        let op = match operator {
+            Operator::Union => Op::Union,
+            Operator::Intersection => Op::Intersection,
+            Operator::Difference => Op::Difference,
+            Operator::Blend(s) => Op::Blend(s.get()),
+            Operator::BlendIntersection(s) => Op::BlendIntersection(s.get()),
+            Operator::BlendDifference(s) => Op::BlendDifference(s.get()),
+            Operator::Sum => {
+                operands.sort_by_key(|operand| !self.is_pure_point(operand));
+                Op::Sum
+            }
+            Operator::GradientBlend => {
+                let turned = even_scale(node_from_world).is_some();
+                let world_from_node = || node_from_world.matrix3.inverse().transpose().as_mat3();
+                self.frames.push((!turned).then(world_from_node));
+                Op::GradientBlend(self.frames.len() as u32 - 1)
+            }
+        };
+        self.push(op, operands)
+    }
+
+    fn push(&mut self, op: Op, operands: impl IntoIterator<Item = Instr>) -> Instr {
+        let first = self.arena.len() as u32;
+        self.arena.extend(operands);
+        Instr { op, first, count: self.arena.len() as u32 - first }
+    }
+
+    /// Whether this is a leaf that a sum takes by tables.
+    pub(crate) fn is_pure_point(&self, instr: &Instr) -> bool {
+        matches!(instr.op, Op::Leaf(i) if matches!(self.leaves[i as usize], Leaf::PurePoint(_)))
+    }
+}
+
+impl Field for Tree {
+    fn support(&self) -> Aabb {
+        self.support
+    }
+
+    fn sampler(&self) -> Box<dyn Sampler + '_> {
+        Box::new(TreeSampler::new(self))
+    }
+}
+
+/// The compiled form of a warp that is not affine.
+///
+/// Panics for an affine one, which is folded into the leaves instead.
+pub(crate) fn warp_map(warp: &Warp) -> WarpMap {
+    match warp {
+        Warp::Taper(w) => WarpMap::Taper(TaperMap::new(w)),
+        Warp::Twist(w) => WarpMap::Twist(TwistMap::new(w)),
+        Warp::Bend(w) => WarpMap::Bend(BendMap::new(w)),
+        Warp::Transform(_) | Warp::Affine(_) => unreachable!("affine warps are folded into the leaves"),
+    }
+}
+
+/// The box outside which the field of `node` is 0, in its parent's space; empty if the node is not heard.
+pub fn support(node: &Node) -> Aabb {
+    if !node.is_heard() {
+        return Aabb::EMPTY;
+    }
+    match &node.shape {
+        Shape::Primitive(primitive) => leaf::support(primitive),
+        Shape::Warp(warp, child) => warped_region(warp, &support(child)),
+        Shape::Operator(operator, children) => {
+            let mut boxes = children.iter().map(|child| (child.is_heard(), support(child)));
+            match operator {
+                Operator::Difference | Operator::BlendDifference(_) => {
+                    boxes.next().map_or(Aabb::EMPTY, |(_, first)| first)
+                }
+                Operator::Intersection | Operator::BlendIntersection(_) => {
+                    let heard = boxes.filter(|(heard, _)| *heard).map(|(_, b)| b);
+                    heard.reduce(|a, b| a.intersection(&b)).unwrap_or(Aabb::EMPTY)
+                }
+                _ => boxes.fold(Aabb::EMPTY, |all, (_, b)| all.union(&b)),
+            }
+        }
+    }
+}
+
+/// A box in the parent's space around where a warp takes all points of the child's `region`.
+pub(crate) fn warped_region(warp: &Warp, region: &Aabb) -> Aabb {
+    match warp.parent_from_child() {
+        _ if region.is_empty() => Aabb::EMPTY,
+        Some(map) => {
+            let corners = region.corners().map(|p| map.transform_point3(p));
+            let image = Aabb::of_points(corners);
+            image.grown(2e-6 * image.min.abs().max(image.max.abs()).max_element())
+        }
+        None => warp_map(warp).parent_region(region),
+    }
+}

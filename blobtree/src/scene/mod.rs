@@ -1,0 +1,180 @@
+//! Scenes and their files: a tree with a title, read from and written to JSON text.
+//!
+//! Reach for [`Scene::from_bytes`] and [`Scene::to_text`]; what a file looks like is in
+//! `docs/scene-format.md`. Nothing here opens a file: bytes come in, text goes out, and a [`MeshSource`]
+//! answers for the mesh files that a scene names.
+
+mod bounds;
+mod check;
+mod color;
+mod definitions;
+mod error;
+mod layout;
+mod locate;
+mod parameters;
+mod read;
+mod read_node;
+mod schema;
+mod strict;
+mod write;
+
+use crate::imported::ImportedMesh;
+use crate::node::NodeRef;
+use mesh::MeshDistance;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::sync::Arc;
+
+pub(crate) use check::measure;
+pub use color::ColorError;
+pub use error::{SceneError, SceneProblem, TextPosition};
+pub use schema::scene_schema;
+
+/// The newest version of the file format, and the one that is written.
+pub const VERSION: u64 = 1;
+/// Largest scene file, bytes.
+pub const MAX_FILE_BYTES: usize = 64 << 20;
+/// Most JSON objects in a scene file: nodes and points of polylines.
+pub const MAX_OBJECTS: usize = 250_000;
+/// Most nodes in a scene, a shared one counted wherever it stands.
+pub const MAX_NODES: u64 = 1_000_000;
+/// Most nodes on the way from the root to a leaf, both included.
+pub const MAX_DEPTH: usize = 256;
+
+/// The names of all node types in scene files: primitives, operators, warps.
+pub const TYPE_NAMES: [&str; 25] = [
+    "point",
+    "segment",
+    "polyline",
+    "disc",
+    "polygon",
+    "box",
+    "cylinder",
+    "cone",
+    "torus",
+    "ellipsoid",
+    "half_space",
+    "mesh",
+    "union",
+    "intersection",
+    "difference",
+    "blend",
+    "blend_intersection",
+    "blend_difference",
+    "sum",
+    "gradient_blend",
+    "transform",
+    "affine",
+    "taper",
+    "twist",
+    "bend",
+];
+
+/// A tree with what a file keeps beside it. Cheap to clone: everything large is shared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// What the user calls it.
+    pub title: Option<String>,
+    /// Parts by name. A file writes each once, and whatever is the same allocation refers to it.
+    pub definitions: Arc<BTreeMap<String, NodeRef>>,
+    /// The tree.
+    pub root: NodeRef,
+}
+
+impl Scene {
+    /// An untitled scene. Legal if [`Self::check`] says so.
+    pub fn new(root: impl Into<NodeRef>) -> Self {
+        Self { title: None, definitions: Arc::default(), root: root.into() }
+    }
+
+    /// The same scene under this title.
+    pub fn titled(self, title: impl Into<String>) -> Self {
+        Self { title: Some(title.into()), ..self }
+    }
+
+    /// Reads the text of a scene file. Nodes that the file shares come back as one allocation.
+    ///
+    /// - **Promises:** what comes back passes [`Self::check`]; [`Self::to_text`] of it reads back equal.
+    /// - **Cost:** linear in the text; at most [`MAX_FILE_BYTES`] and [`MAX_OBJECTS`] are looked at.
+    /// - **Errors:** anything that is not a legal scene, with its line, column and node.
+    pub fn from_bytes(bytes: &[u8], meshes: &mut dyn MeshSource) -> Result<Self, SceneError> {
+        read::scene(bytes, meshes)
+    }
+
+    /// Reads a scene file to its end, but never more than [`MAX_FILE_BYTES`].
+    ///
+    /// Errors: as [`Self::from_bytes`], and what the reader says.
+    pub fn read(input: impl Read, meshes: &mut dyn MeshSource) -> Result<Self, SceneError> {
+        let mut bytes = Vec::new();
+        // One byte more than legal, so that a file which is too large is told from one that just fits.
+        let mut input = input.take(MAX_FILE_BYTES as u64 + 1);
+        input.read_to_end(&mut bytes).map_err(|e| SceneProblem::Unreadable(e.to_string()))?;
+        Self::from_bytes(&bytes, meshes)
+    }
+
+    /// The text of the scene's file: the same bytes for equal scenes that share alike.
+    ///
+    /// - **Promises:** [`Self::from_bytes`] reads it back equal, numbers bit by bit, sharing included; writing
+    ///   that gives the same text again. Shared nodes without a definition get one.
+    /// - **Cost:** linear in the text; each shared node is written once.
+    /// - **Errors:** what [`Self::check`] finds, and text that would be too large to be read again.
+    pub fn to_text(&self) -> Result<String, SceneError> {
+        self.check()?;
+        let text = layout::lay_out(&write::compact(self));
+        bounds::check(&text)?;
+        Ok(text)
+    }
+
+    /// Whether every number is in its legal range and the tree is neither too deep nor too large.
+    ///
+    /// Errors: the first node that is not, by its path. Cost: linear in the number of different nodes.
+    pub fn check(&self) -> Result<(), SceneError> {
+        check::scene(self)
+    }
+}
+
+/// How a scene file names a mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshReference {
+    /// The mesh file's path, relative to the scene's folder.
+    pub file: String,
+    /// SHA-256 of the file's bytes, 64 lower-case hexadecimal digits.
+    pub sha256: String,
+    /// How far the influence reaches beyond the surface, mm. Default: 5.
+    #[serde(default = "five")]
+    pub falloff: f32,
+}
+
+fn five() -> f32 {
+    5.0
+}
+
+impl From<&ImportedMesh> for MeshReference {
+    fn from(mesh: &ImportedMesh) -> Self {
+        Self { file: mesh.file.clone(), sha256: mesh.sha256.clone(), falloff: mesh.falloff }
+    }
+}
+
+/// Finds the meshes that scenes refer to. The upper room opens the files.
+pub trait MeshSource {
+    /// The mesh in the file that `reference` names. Asked once for each file and hash in a scene.
+    ///
+    /// Errors: why there is none, in words for the user: no such file, another hash, not a mesh.
+    fn load(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String>;
+}
+
+/// For scenes without meshes: has none.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoMeshes;
+
+impl MeshSource for NoMeshes {
+    fn load(&mut self, _: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+        Err("mesh files are not read here".into())
+    }
+}
+
+#[cfg(test)]
+mod tests;

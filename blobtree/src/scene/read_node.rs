@@ -1,0 +1,268 @@
+//! From JSON values to nodes.
+
+use super::check::{Size, numbers};
+use super::error::SceneProblem;
+use super::locate::Step;
+use super::parameters::{self, FieldFault, described};
+use super::read::Fault;
+use super::{MAX_DEPTH, MAX_NODES, MeshReference, MeshSource, TYPE_NAMES};
+use crate::imported::ImportedMesh;
+use crate::node::{Color, Node, NodeRef, Shape};
+use crate::operator::{Operator, Sharpness};
+use crate::primitive::Primitive;
+use crate::warp::Warp;
+use mesh::MeshDistance;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+type Fields = Map<String, Value>;
+
+/// The fields that every node may have.
+const COMMON: [&str; 5] = ["type", "name", "color", "muted", "construction"];
+/// Those and the warps' own.
+const WARP_COMMON: [&str; 6] = ["child", "type", "name", "color", "muted", "construction"];
+
+/// Reads nodes, knowing the definitions read so far.
+pub(super) struct NodeReader<'a> {
+    meshes: &'a mut dyn MeshSource,
+    /// By file and hash.
+    loaded: BTreeMap<(String, String), Arc<MeshDistance>>,
+    definitions: BTreeMap<String, (NodeRef, Size)>,
+    /// From the top of the file to the value being read.
+    steps: Vec<Step>,
+}
+
+/// What a node's type says about the rest of its fields.
+enum Kind {
+    Primitive,
+    Operator(Operator),
+    Warp,
+}
+
+impl<'a> NodeReader<'a> {
+    pub(super) fn new(meshes: &'a mut dyn MeshSource) -> Self {
+        Self { meshes, loaded: BTreeMap::new(), definitions: BTreeMap::new(), steps: Vec::new() }
+    }
+
+    /// Reads a definition; those that it uses must have been read.
+    pub(super) fn define(&mut self, name: String, value: Value) -> Result<(), Fault> {
+        self.steps = vec![Step::key("define"), Step::key(&name)];
+        let node = self.node(value, 1)?;
+        self.definitions.insert(name, node);
+        Ok(())
+    }
+
+    /// Reads the tree at these steps.
+    pub(super) fn read_from(&mut self, steps: Vec<Step>, value: Value) -> Result<NodeRef, Fault> {
+        self.steps = steps;
+        Ok(self.node(value, 1)?.0)
+    }
+
+    pub(super) fn into_definitions(self) -> BTreeMap<String, NodeRef> {
+        self.definitions.into_iter().map(|(name, (node, _))| (name, node)).collect()
+    }
+
+    fn fault(&self, problem: SceneProblem) -> Fault {
+        Fault { steps: self.steps.clone(), problem }
+    }
+
+    fn fault_in(&self, (steps, problem): FieldFault) -> Fault {
+        Fault { steps: self.steps.iter().cloned().chain(steps).collect(), problem }
+    }
+
+    fn at<T>(&mut self, steps: &[Step], read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
+        let depth = self.steps.len();
+        self.steps.extend_from_slice(steps);
+        let done = read(self)?;
+        self.steps.truncate(depth);
+        Ok(done)
+    }
+
+    /// `depth` is 1 at the root.
+    fn node(&mut self, value: Value, depth: usize) -> Result<(NodeRef, Size), Fault> {
+        let shown = described(&value);
+        let Value::Object(mut fields) = value else {
+            return Err(self.fault(parameters::wrong("the node", shown, "an object with `type` or `use`")));
+        };
+        let (node, size) = if let Some(name) = fields.remove("use") {
+            self.used(&name, &fields)?
+        } else {
+            let (node, size) = self.fresh(&mut fields, depth)?;
+            (NodeRef::new(node), size)
+        };
+        if depth - 1 + size.height > MAX_DEPTH {
+            return Err(self.fault(SceneProblem::TooDeep));
+        }
+        if size.nodes > MAX_NODES {
+            return Err(self.fault(SceneProblem::TooManyNodes));
+        }
+        Ok((node, size))
+    }
+
+    /// A node that is written elsewhere.
+    fn used(&self, name: &Value, others: &Fields) -> Result<(NodeRef, Size), Fault> {
+        parameters::nothing_left(others, &["use"]).map_err(|fault| self.fault_in(fault))?;
+        let at_use = |problem| self.fault_in((vec![Step::key("use")], problem));
+        let Some(name) = name.as_str() else {
+            return Err(at_use(parameters::wrong("use", described(name), "the name of a definition")));
+        };
+        self.definitions.get(name).cloned().ok_or_else(|| {
+            at_use(parameters::unknown("definition", name, self.definitions.keys().map(String::as_str)))
+        })
+    }
+
+    /// A node that is written here.
+    fn fresh(&mut self, fields: &mut Fields, depth: usize) -> Result<(Node, Size), Fault> {
+        if depth > MAX_DEPTH {
+            return Err(self.fault(SceneProblem::TooDeep));
+        }
+        let mut node = self.common(fields)?;
+        let (type_name, kind) = self.kind(fields)?;
+        let (shape, size) = match kind {
+            Kind::Primitive => (Shape::Primitive(self.primitive(&type_name, fields)?), Size::over([].into_iter())),
+            Kind::Operator(operator) => {
+                let (children, size) = self.children(fields, depth)?;
+                let own = operator.sharpness().map(|_| "sharpness");
+                let legal: Vec<&str> = own.into_iter().chain(["children"]).chain(COMMON).collect();
+                parameters::nothing_left(fields, &legal).map_err(|fault| self.fault_in(fault))?;
+                (Shape::Operator(operator, children), size)
+            }
+            Kind::Warp => {
+                let expected = "the node that is warped";
+                let child = parameters::need(fields, "child", expected).map_err(|fault| self.fault_in(fault))?;
+                let warp = self.warp(&type_name, fields)?;
+                let (child, size) = self.at(&[Step::key("child")], |reader| reader.node(child, depth + 1))?;
+                (Shape::Warp(warp, child), Size::over([size].into_iter()))
+            }
+        };
+        node.shape = shape;
+        numbers(&node).map_err(|problem| {
+            let field = match &problem {
+                SceneProblem::Parameter(e) => vec![Step::key(e.field.split('.').next().unwrap_or_default())],
+                _ => vec![],
+            };
+            self.fault_in((field, problem))
+        })?;
+        Ok((node, size))
+    }
+
+    /// A node with the fields that every node may have, still without a shape.
+    fn common(&self, fields: &mut Fields) -> Result<Node, Fault> {
+        let in_here = |fault| self.fault_in(fault);
+        let mut node = Node::new(Shape::Operator(Operator::Union, Vec::new()));
+        node.name = parameters::take(fields, "name", "a text").map_err(in_here)?;
+        let color: Option<String> = parameters::take(fields, "color", "a text like \"#ff8800\"").map_err(in_here)?;
+        if let Some(color) = color {
+            let color = color.parse::<Color>().map_err(|_| {
+                let shown = described(&color.as_str().into());
+                let problem = parameters::wrong("color", shown, "a colour like \"#ff8800\"");
+                self.fault_in((vec![Step::key("color")], problem))
+            })?;
+            node.color = Some(color);
+        }
+        node.muted = parameters::take(fields, "muted", "true or false").map_err(in_here)?.unwrap_or(false);
+        let construction = parameters::take(fields, "construction", "true or false").map_err(in_here)?;
+        node.construction = construction.unwrap_or(false);
+        Ok(node)
+    }
+
+    fn kind(&self, fields: &mut Fields) -> Result<(String, Kind), Fault> {
+        let in_here = |fault| self.fault_in(fault);
+        let value = parameters::need(fields, "type", "what the node is, such as \"point\"").map_err(in_here)?;
+        let at_type = |problem| self.fault_in((vec![Step::key("type")], problem));
+        let Value::String(name) = value else {
+            return Err(at_type(parameters::wrong("type", described(&value), "a node type such as \"point\"")));
+        };
+        let kind = match name.as_str() {
+            "union" => Kind::Operator(Operator::Union),
+            "intersection" => Kind::Operator(Operator::Intersection),
+            "difference" => Kind::Operator(Operator::Difference),
+            "blend" => Kind::Operator(Operator::Blend(self.sharpness(fields)?)),
+            "blend_intersection" => Kind::Operator(Operator::BlendIntersection(self.sharpness(fields)?)),
+            "blend_difference" => Kind::Operator(Operator::BlendDifference(self.sharpness(fields)?)),
+            "sum" => Kind::Operator(Operator::Sum),
+            "gradient_blend" => Kind::Operator(Operator::GradientBlend),
+            "transform" | "affine" | "taper" | "twist" | "bend" => Kind::Warp,
+            other if TYPE_NAMES.contains(&other) => Kind::Primitive,
+            other => return Err(at_type(parameters::unknown("node type", other, TYPE_NAMES.into_iter()))),
+        };
+        Ok((name, kind))
+    }
+
+    fn sharpness(&self, fields: &mut Fields) -> Result<Sharpness, Fault> {
+        let given = parameters::take(fields, "sharpness", "a number").map_err(|fault| self.fault_in(fault))?;
+        given.map_or(Ok(Sharpness::DEFAULT), |s| {
+            Sharpness::new(s).map_err(|e| self.fault_in((vec![Step::key("sharpness")], e.into())))
+        })
+    }
+
+    fn children(&mut self, fields: &mut Fields, depth: usize) -> Result<(Vec<NodeRef>, Size), Fault> {
+        let expected = "a list of nodes, which may be empty";
+        let value = parameters::need(fields, "children", expected).map_err(|fault| self.fault_in(fault))?;
+        let Value::Array(values) = value else {
+            let problem = parameters::wrong("children", described(&value), expected);
+            return Err(self.fault_in((vec![Step::key("children")], problem)));
+        };
+        let mut children = Vec::with_capacity(values.len());
+        let mut sizes = Vec::with_capacity(values.len());
+        for (index, value) in values.into_iter().enumerate() {
+            let steps = [Step::key("children"), Step::Index(index)];
+            let (child, size) = self.at(&steps, |reader| reader.node(value, depth + 1))?;
+            children.push(child);
+            sizes.push(size);
+        }
+        Ok((children, Size::over(sizes.into_iter())))
+    }
+
+    fn warp(&self, type_name: &str, fields: &mut Fields) -> Result<Warp, Fault> {
+        let fields = std::mem::take(fields);
+        let warp = match type_name {
+            "transform" => parameters::all(fields, &WARP_COMMON).map(Warp::Transform),
+            "affine" => parameters::all(fields, &WARP_COMMON).map(Warp::Affine),
+            "taper" => parameters::all(fields, &WARP_COMMON).map(Warp::Taper),
+            "twist" => parameters::all(fields, &WARP_COMMON).map(Warp::Twist),
+            _ => parameters::all(fields, &WARP_COMMON).map(Warp::Bend),
+        };
+        warp.map_err(|fault| self.fault_in(fault))
+    }
+
+    fn primitive(&mut self, type_name: &str, fields: &mut Fields) -> Result<Primitive, Fault> {
+        let fields = std::mem::take(fields);
+        let primitive = match type_name {
+            "point" => parameters::all(fields, &COMMON).map(Primitive::Point),
+            "segment" => parameters::all(fields, &COMMON).map(Primitive::Segment),
+            "polyline" => parameters::all(fields, &COMMON).map(Primitive::Polyline),
+            "disc" => parameters::all(fields, &COMMON).map(Primitive::Disc),
+            "polygon" => parameters::all(fields, &COMMON).map(Primitive::Polygon),
+            "box" => parameters::all(fields, &COMMON).map(Primitive::Box),
+            "cylinder" => parameters::all(fields, &COMMON).map(Primitive::Cylinder),
+            "cone" => parameters::all(fields, &COMMON).map(Primitive::Cone),
+            "torus" => parameters::all(fields, &COMMON).map(Primitive::Torus),
+            "ellipsoid" => parameters::all(fields, &COMMON).map(Primitive::Ellipsoid),
+            "half_space" => parameters::all(fields, &COMMON).map(Primitive::HalfSpace),
+            _ => {
+                let reference = parameters::all(fields, &COMMON).map_err(|fault| self.fault_in(fault))?;
+                return self.mesh(reference).map(Primitive::Mesh);
+            }
+        };
+        primitive.map_err(|fault| self.fault_in(fault))
+    }
+
+    fn mesh(&mut self, reference: MeshReference) -> Result<ImportedMesh, Fault> {
+        let key = (reference.file.clone(), reference.sha256.clone());
+        let distance = match self.loaded.get(&key) {
+            Some(distance) => distance.clone(),
+            None => {
+                let distance = self.meshes.load(&reference).map_err(|reason| {
+                    let problem = SceneProblem::Mesh { file: super::error::shortened(&reference.file), reason };
+                    self.fault_in((vec![Step::key("file")], problem))
+                })?;
+                self.loaded.insert(key, distance.clone());
+                distance
+            }
+        };
+        let MeshReference { file, sha256, falloff } = reference;
+        Ok(ImportedMesh { file, sha256, falloff, distance })
+    }
+}

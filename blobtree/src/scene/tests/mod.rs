@@ -1,0 +1,20 @@
+//! What scene files promise.
+
+mod broken;
+mod messages;
+mod published;
+mod round_trip;
+
+use super::{NoMeshes, Scene, SceneError};
+
+fn read(text: &str) -> Result<Scene, SceneError> {
+    Scene::from_bytes(text.as_bytes(), &mut NoMeshes)
+}
+
+/// A file with this root.
+fn file(root: &str) -> String {
+    format!(r#"{{"format": "trullo", "version": 1, "root": {root}}}"#)
+}
+
+/// A file with a node of every type that needs no mesh.
+const ALL_TYPES: &str = include_str!("all_types.trullo");

@@ -1,0 +1,1 @@
+//! The documents and examples beside the code say what the code does.

@@ -1,0 +1,107 @@
+//! Writing and reading give back what was there.
+
+use super::{ALL_TYPES, file, read};
+use crate::build::{Build, point, union};
+use crate::node::{Node, NodeRef, Shape};
+use crate::primitive::Primitive;
+use crate::random::RandomTree;
+use crate::scene::{NoMeshes, Scene};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// For each node in depth-first order, the position at which the same allocation came first.
+fn sharing(scene: &Scene) -> Vec<usize> {
+    fn visit(node: &NodeRef, seen: &mut HashMap<*const Node, usize>, out: &mut Vec<usize>) {
+        let position = out.len();
+        out.push(*seen.entry(Arc::as_ptr(node)).or_insert(position));
+        node.children().iter().for_each(|child| visit(child, seen, out));
+    }
+    let (mut seen, mut out) = (HashMap::new(), Vec::new());
+    visit(&scene.root, &mut seen, &mut out);
+    scene.definitions.values().for_each(|node| visit(node, &mut seen, &mut out));
+    out
+}
+
+#[test]
+fn random_scenes_come_back_equal_and_share_the_same_nodes() {
+    for seed in 0..400 {
+        let scene = Scene::new(RandomTree::new(seed).tree()).titled(format!("seed \"{seed}\""));
+        let text = scene.to_text().expect("random scenes are legal");
+        let back = read(&text).unwrap_or_else(|e| panic!("seed {seed}: {e}\n{text}"));
+        assert_eq!((&back.title, &back.root), (&scene.title, &scene.root), "seed {seed}");
+        // The written definitions were not there before, so only the trees are compared.
+        let trees = |scene: &Scene| sharing(&Scene::new(scene.root.clone()));
+        assert_eq!(trees(&back), trees(&scene), "seed {seed}");
+        assert_eq!(back.to_text().as_ref(), Ok(&text), "seed {seed}");
+    }
+}
+
+#[test]
+fn a_scene_with_everything_comes_back_word_for_word_except_for_defaults_and_layout() {
+    let scene = read(ALL_TYPES).expect("the file is legal");
+    let text = scene.to_text().expect("what was read can be written");
+    let words = |text: &str| text.split_whitespace().collect::<String>();
+    assert_eq!(words(&text), words(ALL_TYPES));
+    let back = read(&text).expect("what was written can be read");
+    assert_eq!(back, scene);
+    assert_eq!(sharing(&back), sharing(&scene));
+}
+
+#[test]
+fn definitions_keep_their_names_even_unused_or_twice_for_one_node() {
+    let text = r#"{"format": "trullo", "version": 1, "define": {
+        "b": {"type": "union", "children": [{"use": "z"}]},
+        "z": {"type": "point", "center": [0, 0, 0], "radius": 1},
+        "a": {"use": "z"}}, "root": {"use": "z"}}"#;
+    let scene = read(text).expect("legal");
+    assert!(Arc::ptr_eq(&scene.root, &scene.definitions["a"]));
+    let back = read(&scene.to_text().expect("legal")).expect("legal");
+    assert_eq!(back, scene);
+    assert_eq!(sharing(&back), sharing(&scene));
+}
+
+#[test]
+fn shared_nodes_are_written_once_under_names_of_their_own() {
+    let leg = point([0., 0., 0.], 3.).named("leg").into_shared();
+    let other = point([0., 9., 0.], 3.).named("leg").into_shared();
+    let scene = Scene::new(union([leg.clone(), other.clone(), leg, other]));
+    let text = scene.to_text().expect("legal");
+    let expected = r#"{
+  "format": "trullo",
+  "version": 1,
+  "define": {
+    "leg": {"type": "point", "name": "leg", "center": [0, 0, 0], "radius": 3},
+    "leg 2": {"type": "point", "name": "leg", "center": [0, 9, 0], "radius": 3}
+  },
+  "root": {
+    "type": "union",
+    "children": [{"use": "leg"}, {"use": "leg 2"}, {"use": "leg"}, {"use": "leg 2"}]
+  }
+}
+"#;
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn numbers_come_back_bit_by_bit_and_short() {
+    let seed = 7;
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let exact = [0.1, 1.0, 1e5, 1e-3, 16_777_216.0 / 1000.0, 0.3, 99_999.99, 5e-3_f32.next_up()];
+    let random = std::iter::repeat_with(|| 10_f32.powf(rng.f32() * 8.0 - 3.0)).take(20_000);
+    for radius in exact.into_iter().chain(random) {
+        let text = Scene::new(point([0., 0., -radius], radius)).to_text().expect("legal");
+        let back = read(&text).expect("legal");
+        let Shape::Primitive(Primitive::Point(point)) = &back.root.shape else { panic!("it is a point") };
+        assert_eq!(point.radius.to_bits(), radius.to_bits(), "seed {seed}: {radius:?} in {text}");
+        assert_eq!(point.center.z.to_bits(), (-radius).to_bits(), "seed {seed}: {radius:?} in {text}");
+    }
+    let text = Scene::new(point([0.1, 2.0, -3e-5], 1e5)).to_text().expect("legal");
+    assert!(text.contains(r#""center": [0.1, 2, -3e-5], "radius": 100000"#), "{text}");
+}
+
+#[test]
+fn a_byte_order_mark_and_any_white_space_are_welcome() {
+    let text = format!("\u{feff}\r\n\t{}\r\n", file(r#"{"type": "union", "children": []}"#));
+    assert!(read(&text).is_ok());
+    assert!(Scene::read(text.as_bytes(), &mut NoMeshes).is_ok());
+}

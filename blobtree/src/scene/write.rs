@@ -1,0 +1,259 @@
+//! From a scene to JSON text without spaces.
+
+use super::{MeshReference, Scene, VERSION};
+use crate::node::{Node, NodeRef, Shape};
+use crate::primitive::{
+    Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, Primitive, Segment, Torus,
+};
+use crate::warp::{AffineMap, Bend, Taper, Transform, Twist, Warp};
+use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
+use serde_json::ser::Formatter;
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::io;
+
+/// The text of a scene that passes its check, as one line.
+pub(super) fn compact(scene: &Scene) -> String {
+    let names = Names::of(scene);
+    let file = File {
+        format: "trullo",
+        version: VERSION,
+        title: scene.title.as_deref(),
+        define: (!names.all.is_empty()).then_some(Definitions(&names)),
+        root: Referred { node: &scene.root, names: &names },
+    };
+    let mut bytes = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, ShortNumbers);
+    file.serialize(&mut serializer).expect("writing to memory works, and every key is a string");
+    String::from_utf8(bytes).expect("JSON is UTF-8")
+}
+
+#[derive(serde::Serialize)]
+struct File<'a> {
+    format: &'static str,
+    version: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    title: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    define: Option<Definitions<'a>>,
+    root: Referred<'a>,
+}
+
+/// The names under which nodes are written, apart from where they stand.
+struct Names<'a> {
+    /// By address; the nodes stay alive through the scene. Looked up, never walked through.
+    of: HashMap<*const Node, String>,
+    all: BTreeMap<String, &'a NodeRef>,
+}
+
+impl<'a> Names<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        let mut names = Self { of: HashMap::new(), all: BTreeMap::new() };
+        for (name, node) in scene.definitions.iter() {
+            names.of.entry(address(node)).or_insert_with(|| name.clone());
+            names.all.insert(name.clone(), node);
+        }
+        let mut seen = HashSet::new();
+        let mut counts = HashMap::new();
+        for node in std::iter::once(&scene.root).chain(scene.definitions.values()) {
+            names.find_shared(node, &mut seen, &mut counts);
+        }
+        names
+    }
+
+    /// Names every node that is met a second time.
+    fn find_shared(
+        &mut self,
+        node: &'a NodeRef,
+        seen: &mut HashSet<*const Node>,
+        counts: &mut HashMap<String, usize>,
+    ) {
+        if seen.insert(address(node)) {
+            node.children().iter().for_each(|child| self.find_shared(child, seen, counts));
+        } else if !self.of.contains_key(&address(node)) {
+            let base = node.name.as_deref().unwrap_or(node.type_name());
+            let count = counts.entry(base.into()).or_insert(0);
+            let name = loop {
+                *count += 1;
+                let name = if *count == 1 { base.to_owned() } else { format!("{base} {count}") };
+                if !self.all.contains_key(&name) {
+                    break name;
+                }
+            };
+            self.all.insert(name.clone(), node);
+            self.of.insert(address(node), name);
+        }
+    }
+}
+
+fn address(node: &NodeRef) -> *const Node {
+    std::ptr::from_ref(&**node)
+}
+
+struct Definitions<'a>(&'a Names<'a>);
+
+impl Serialize for Definitions<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.all.len()))?;
+        for (name, node) in &self.0.all {
+            // Of two names for the same node, the second refers to the first.
+            if self.0.of[&address(node)] == *name {
+                map.serialize_entry(name, &Written { node, names: self.0 })?;
+            } else {
+                map.serialize_entry(name, &Referred { node, names: self.0 })?;
+            }
+        }
+        map.end()
+    }
+}
+
+/// A node where it stands: by name if it has one.
+struct Referred<'a> {
+    node: &'a NodeRef,
+    names: &'a Names<'a>,
+}
+
+impl Serialize for Referred<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { node, names } = *self;
+        match names.of.get(&address(node)) {
+            Some(name) => {
+                let mut map = serializer.serialize_map(Some(1))?;
+                map.serialize_entry("use", name)?;
+                map.end()
+            }
+            None => Written { node, names }.serialize(serializer),
+        }
+    }
+}
+
+/// A node in full.
+struct Written<'a> {
+    node: &'a Node,
+    names: &'a Names<'a>,
+}
+
+impl Serialize for Written<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { node, names } = *self;
+        let sharpness = match &node.shape {
+            Shape::Operator(operator, _) => operator.sharpness().map(|s| s.get()),
+            _ => None,
+        };
+        let fields = Fields {
+            type_name: node.type_name(),
+            name: node.name.as_deref(),
+            color: node.color.map(|color| color.to_string()),
+            muted: node.muted,
+            construction: node.construction,
+            sharpness,
+            parameters: Parameters::of(node),
+            children: match &node.shape {
+                Shape::Operator(_, children) => Some(Children { children, names }),
+                _ => None,
+            },
+            child: match &node.shape {
+                Shape::Warp(_, child) => Some(Referred { node: child, names }),
+                _ => None,
+            },
+        };
+        fields.serialize(serializer)
+    }
+}
+
+#[derive(serde::Serialize)]
+struct Fields<'a> {
+    #[serde(rename = "type")]
+    type_name: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    color: Option<String>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    muted: bool,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    construction: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sharpness: Option<f32>,
+    #[serde(flatten)]
+    parameters: Option<Parameters<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    children: Option<Children<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    child: Option<Referred<'a>>,
+}
+
+struct Children<'a> {
+    children: &'a [NodeRef],
+    names: &'a Names<'a>,
+}
+
+impl Serialize for Children<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(Some(self.children.len()))?;
+        for node in self.children {
+            list.serialize_element(&Referred { node, names: self.names })?;
+        }
+        list.end()
+    }
+}
+
+/// The fields that only this type of node has.
+#[derive(serde::Serialize)]
+#[serde(untagged)]
+enum Parameters<'a> {
+    Point(&'a Point),
+    Segment(&'a Segment),
+    Polyline(&'a Polyline),
+    Disc(&'a Disc),
+    Polygon(&'a Polygon),
+    Box(&'a Cuboid),
+    Cylinder(&'a Cylinder),
+    Cone(&'a Cone),
+    Torus(&'a Torus),
+    Ellipsoid(&'a Ellipsoid),
+    HalfSpace(&'a HalfSpace),
+    Mesh(MeshReference),
+    Transform(&'a Transform),
+    Affine(&'a AffineMap),
+    Taper(&'a Taper),
+    Twist(&'a Twist),
+    Bend(&'a Bend),
+}
+
+impl<'a> Parameters<'a> {
+    fn of(node: &'a Node) -> Option<Self> {
+        Some(match &node.shape {
+            Shape::Operator(..) => return None,
+            Shape::Primitive(Primitive::Point(p)) => Self::Point(p),
+            Shape::Primitive(Primitive::Segment(p)) => Self::Segment(p),
+            Shape::Primitive(Primitive::Polyline(p)) => Self::Polyline(p),
+            Shape::Primitive(Primitive::Disc(p)) => Self::Disc(p),
+            Shape::Primitive(Primitive::Polygon(p)) => Self::Polygon(p),
+            Shape::Primitive(Primitive::Box(p)) => Self::Box(p),
+            Shape::Primitive(Primitive::Cylinder(p)) => Self::Cylinder(p),
+            Shape::Primitive(Primitive::Cone(p)) => Self::Cone(p),
+            Shape::Primitive(Primitive::Torus(p)) => Self::Torus(p),
+            Shape::Primitive(Primitive::Ellipsoid(p)) => Self::Ellipsoid(p),
+            Shape::Primitive(Primitive::HalfSpace(p)) => Self::HalfSpace(p),
+            Shape::Primitive(Primitive::Mesh(p)) => Self::Mesh(p.into()),
+            Shape::Warp(Warp::Transform(w), _) => Self::Transform(w),
+            Shape::Warp(Warp::Affine(w), _) => Self::Affine(w),
+            Shape::Warp(Warp::Taper(w), _) => Self::Taper(w),
+            Shape::Warp(Warp::Twist(w), _) => Self::Twist(w),
+            Shape::Warp(Warp::Bend(w), _) => Self::Bend(w),
+        })
+    }
+}
+
+/// Writes numbers with as few digits as read back equal, and whole numbers without a point.
+struct ShortNumbers;
+
+impl Formatter for ShortNumbers {
+    fn write_f32<W: ?Sized + io::Write>(&mut self, writer: &mut W, value: f32) -> io::Result<()> {
+        let shortest = format!("{value:?}");
+        let short = shortest.strip_suffix(".0").unwrap_or(&shortest);
+        // Reading rounds twice, to f64 and then to f32; where that matters, all digits are written.
+        let same = short.parse::<f64>().is_ok_and(|read| (read as f32).to_bits() == value.to_bits());
+        if same { writer.write_all(short.as_bytes()) } else { write!(writer, "{:?}", f64::from(value)) }
+    }
+}

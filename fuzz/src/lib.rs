@@ -1,0 +1,49 @@
+//! What the fuzz targets share.
+//!
+//! A target is one line: `trullo_fuzz::target!(|data| …)` with what to do with the bytes. Panics, wrong promises,
+//! more than half a gigabyte of memory, and (by `./run`) more than two seconds for one input are finds.
+
+use std::io::Cursor;
+
+use mesh::io::{Attachments, Format, ReadLimits, read, write};
+
+#[doc(hidden)]
+pub use libfuzzer_sys;
+
+/// Memory that the readers may use.
+pub const MEMORY: usize = 500 << 20;
+
+/// Ends the program, and so keeps the input, when more memory is asked for than [`MEMORY`].
+#[global_allocator]
+static ALLOCATOR: cap::Cap<std::alloc::System> = cap::Cap::new(std::alloc::System, MEMORY);
+
+/// Makes a program that feeds bytes to a function.
+#[macro_export]
+macro_rules! target {
+    (|$data:ident| $body:expr) => {
+        $crate::libfuzzer_sys::fuzz_target!(|$data: &[u8]| {
+            $body;
+        });
+    };
+}
+
+/// Reads a mesh; if there is one, it must be writable and come back the same.
+pub fn read_mesh(data: &[u8], named: Format) {
+    let Ok(loaded) = read(Cursor::new(data), named, &ReadLimits::default()) else {
+        return;
+    };
+    let mut file = Cursor::new(Vec::new());
+    write(&mut file, &loaded.mesh, Format::Ply, &Attachments::default()).expect("what was read is writable");
+    let back = read(&mut file, Format::Ply, &ReadLimits::default()).expect("what was written is readable");
+    assert!(back.mesh == loaded.mesh, "the mesh changed");
+}
+
+/// A 3MF package whose model is these bytes, unpacked and so without a checksum in the fuzzer's way.
+pub fn package_of(model: &[u8]) -> Vec<u8> {
+    use std::io::Write;
+    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    zip.start_file("3D/3dmodel.model", options).expect("writing to memory");
+    zip.write_all(model).expect("writing to memory");
+    zip.finish().expect("writing to memory").into_inner()
+}

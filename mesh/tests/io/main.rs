@@ -1,0 +1,7 @@
+//! Mesh files from outside: round trips, what other programs write, and what is broken.
+
+mod broken;
+mod roundtrip;
+mod support;
+mod text;
+mod threemf;

@@ -1,0 +1,487 @@
+//! Places vertices on sharp edges and corners, where faces of different direction meet in a cell.
+//!
+//! A patch whose normals at its crossings disagree is a candidate. Its faces' planes are met in a point, then
+//! the faces are looked at again close to that point: there the normals of a merely curved surface
+//! agree, those of a crease do not, and the planes of curved faces fit. An edge is followed as far as its
+//! vertex may go, to find corners with faces that no crossing of the cell lies on. Whatever does not end on
+//! the surface is placed as smooth.
+//!
+//! **Source:** Kobbelt et al. 2001, *Feature sensitive surface extraction*. **Departs:** planes are taken
+//! near the feature, the vertex may leave its cell (see [`Grid::feature_box`]), and the result is checked.
+
+use blobtree::{Aabb, Brick, Sampler};
+use glam::Vec3;
+
+use crate::crossings::Crossings;
+use crate::brick_surface::Bold;
+use crate::grid::{Grid, Site, is_inside};
+use crate::lattice::CELLS;
+use crate::place::{Batch, Vertex, VertexKind, newton_step, outward};
+use crate::qef::{Meeting, Plane, meet};
+
+/// Normals with a smaller dot product belong to different faces: 11.5° apart. Rounding off an edge that
+/// turns less moves the surface by less than half a cell times the tangent of half the turn, 0.05 cell.
+const SAME_FACE: f32 = 0.98;
+
+/// Linear crossings further off than this (in cells) may lie on the wrong face.
+const TRUSTED_MISS: f32 = 0.03;
+
+/// Crossings of candidates are found this well, in cells.
+const CROSSING_TOLERANCE: f32 = 0.001;
+
+/// How close to the feature its faces are looked at, as a share of the way to their crossings.
+const CLOSE: f32 = 0.2;
+
+/// A smooth surface turns [`CLOSE`] times as much close by, a crease as much as before. What still
+/// turns this share is a crease.
+const STILL_TURNS: f32 = 0.4;
+
+/// How far from the surface a feature vertex may be, in cells.
+const ON_SURFACE: f32 = 0.005;
+
+/// How far from the surface a first guess may be, in cells, if other guesses are to be ignored.
+const NEAR_SURFACE: f32 = 0.05;
+
+/// Rounds of looking at the faces close to the feature.
+const ROUNDS: usize = 2;
+
+/// Reused memory.
+#[derive(Default)]
+pub(crate) struct FeatureScratch {
+    crossings: Crossings,
+    candidates: Vec<Candidate>,
+    planes: Vec<Plane>,
+    near: Vec<Plane>,
+    guesses: Vec<Guess>,
+}
+
+/// A patch that may hold a feature.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    site: u32,
+    /// Its crossings' planes, a range of the scratch planes.
+    planes: [usize; 2],
+    allowed: Aabb,
+    /// Whether `allowed` is the bold box: then only features in cells that the surface does not seem to
+    /// pass count, as all others are seen by the cells they are in.
+    bold: bool,
+    found: Option<Guess>,
+    /// The last answer is final.
+    settled: bool,
+}
+
+/// Where a feature might be.
+#[derive(Clone, Copy, Debug)]
+struct Guess {
+    candidate: usize,
+    point: Vec3,
+    rank: u8,
+    /// Direction of the edge, for rank 2.
+    free: Vec3,
+    /// Smallest dot product of the normals that meet.
+    turn: f32,
+    /// Estimated distance from the surface, mm.
+    off: f32,
+    /// Whether it is the edge of two faces where the cell sees more.
+    is_part: bool,
+}
+
+/// Where placed vertices go.
+pub(crate) struct Placement<'a> {
+    /// One for every site.
+    pub vertices: &'a mut [Vertex],
+    /// Places outside the safe boxes, ascending by vertex.
+    pub bold: &'a mut Vec<Bold>,
+    /// Sites without features, still to be placed.
+    pub smooth: &'a mut Vec<u32>,
+}
+
+impl FeatureScratch {
+    /// Places the sites of creased regions that have features, and lists all others as smooth.
+    pub fn place(
+        &mut self,
+        sampler: &mut dyn Sampler,
+        grid: &Grid,
+        sites: &[Site],
+        out: &mut Placement,
+        batch: &mut Batch,
+    ) {
+        let spacing = grid.brick.spacing;
+        let mut finder = Finder { sampler, grid, sites, spacing, batch, scratch: self };
+        finder.find_candidates(out.smooth);
+        finder.guess_and_add_bold();
+        finder.dbg_all("guess");
+        for _ in 0..ROUNDS {
+            finder.look_close();
+            finder.dbg_all("look");
+        }
+        finder.follow_edges();
+        for number in 0..finder.scratch.candidates.len() {
+            let candidate = finder.scratch.candidates[number];
+            finder.dbg(&candidate, "end");
+            let found = candidate.found.filter(|found| found.off <= ON_SURFACE * spacing);
+            match found {
+                Some(found) if !candidate.bold => {
+                    out.vertices[candidate.site as usize] = finder.vertex(&candidate, found);
+                }
+                Some(found) if std::env::var("VAR").is_ok() || finder.is_unseen(&candidate, found.point) => {
+                    out.bold.push(finder.bold(&candidate, found));
+                }
+                None if !candidate.bold => out.smooth.push(candidate.site),
+                _ => {}
+            }
+        }
+    }
+}
+
+struct Finder<'a> {
+    sampler: &'a mut dyn Sampler,
+    grid: &'a Grid,
+    sites: &'a [Site],
+    spacing: f32,
+    batch: &'a mut Batch,
+    scratch: &'a mut FeatureScratch,
+}
+
+impl Finder<'_> {
+    fn dbg_all(&self, what: &str) { for c in &self.scratch.candidates { self.dbg(c, what); } }
+    fn dbg(&self, c: &Candidate, what: &str) {
+        if let Ok(cell) = std::env::var("CELL") {
+            let want: Vec<i32> = cell.split(',').map(|x| x.parse().unwrap()).collect();
+            let site = self.sites[c.site as usize];
+            if (0..3).all(|a| self.grid.brick.origin[a] + i32::from(site.cell[a]) == want[a]) {
+                eprintln!("{what} {c:?} config {:08b} h {} allowed {} {}", site.config, self.spacing, c.allowed.min/self.spacing, c.allowed.max/self.spacing);
+                if let Some(f) = c.found { eprintln!("   at {} off {}", f.point/self.spacing, f.off/self.spacing); }
+                for p in &self.scratch.planes[c.planes[0]..c.planes[1]] { eprintln!("    {} {}", p.point/self.spacing, p.normal); }
+            }
+        }
+    }
+
+    /// Sorts the sites into candidates and smooth ones, first by linear, then by exact crossings.
+    fn find_candidates(&mut self, smooth: &mut Vec<u32>) {
+        let Self { sampler, grid, sites, spacing, batch, scratch } = self;
+        let FeatureScratch { crossings, candidates, planes, near, .. } = &mut **scratch;
+        crossings.find(&mut **sampler, grid, batch);
+        candidates.clear();
+        planes.clear();
+        for (number, &site) in sites.iter().enumerate() {
+            near.clear();
+            near.extend(crossings.of(site).map(|c| c.plane));
+            if turn(near) < SAME_FACE || crossings.of(site).any(|c| c.is_off(TRUSTED_MISS)) {
+                candidates.push(Candidate {
+                    site: number as u32,
+                    planes: [0; 2],
+                    allowed: grid.feature_box(site.cell, site.config),
+                    bold: false,
+                    found: None,
+                    settled: false,
+                });
+            } else {
+                smooth.push(number as u32);
+            }
+        }
+        let wanted = candidates.iter().map(|c| sites[c.site as usize]);
+        crossings.refine(&mut **sampler, wanted, *spacing, CROSSING_TOLERANCE, batch);
+        candidates.retain_mut(|candidate| {
+            let first = planes.len();
+            planes.extend(crossings.of(sites[candidate.site as usize]).map(|c| c.plane));
+            candidate.planes = [first, planes.len()];
+            let sharp = turn(&planes[first..]) < SAME_FACE;
+            if !sharp {
+                planes.truncate(first);
+                smooth.push(candidate.site);
+            }
+            sharp
+        });
+    }
+
+    /// Guesses for all candidates, then for those that have no good one in their safe boxes in bold ones.
+    fn guess_and_add_bold(&mut self) {
+        let safe = self.scratch.candidates.len();
+        self.guess(0);
+        for number in 0..safe {
+            let candidate = self.scratch.candidates[number];
+            let good = candidate.found.filter(|f| f.off <= NEAR_SURFACE * self.spacing);
+            if good.is_none_or(|good| good.is_part) {
+                let allowed = self.grid.bold_box(self.sites[candidate.site as usize].cell);
+                let bold = Candidate { allowed, bold: true, found: None, ..candidate };
+                self.scratch.candidates.push(bold);
+            }
+        }
+        self.guess(safe);
+    }
+
+    /// Meets the crossings' planes. Where three or more faces meet elsewhere, their pairs are tried as well:
+    /// their corner may lie in another cell while one of their edges passes this one.
+    fn guess(&mut self, first: usize) {
+        self.scratch.guesses.clear();
+        for number in first..self.scratch.candidates.len() {
+            let candidate = self.scratch.candidates[number];
+            let planes = &self.scratch.planes[candidate.planes[0]..candidate.planes[1]];
+            let whole = meet(planes);
+            let mut new: Vec<Guess> =
+                whole.and_then(|m| Guess::new(number, m, &candidate.allowed, turn(planes))).into_iter().collect();
+            if whole.is_none_or(|m| m.rank == 3) {
+                let faces = faces_of(planes);
+                for (i, &a) in faces.iter().enumerate() {
+                    new.extend(faces[i + 1..].iter().filter_map(|&b| {
+                        let meeting = meet(&[a, b]).filter(|m| m.rank == 2)?;
+                        let turn = a.normal.dot(b.normal);
+                        let guess = Guess::new(number, meeting, &candidate.allowed, turn)?;
+                        Some(Guess { is_part: true, ..guess })
+                    }));
+                }
+            }
+            if candidate.bold {
+                new.retain_mut(|guess| self.move_out_of_sight(&candidate, guess));
+            }
+            self.scratch.guesses.extend(new);
+        }
+        self.measure_guesses();
+        for guess in &self.scratch.guesses {
+            let best = &mut self.scratch.candidates[guess.candidate].found;
+            let better = |old: &Guess| old.off > NEAR_SURFACE * self.spacing && guess.off < old.off;
+            if best.as_ref().is_none_or(better) {
+                *best = Some(*guess);
+            }
+        }
+    }
+
+    /// Moves an edge's guess along itself to the nearest place where [`Self::is_unseen`] holds. Returns
+    /// whether there is one.
+    fn move_out_of_sight(&mut self, candidate: &Candidate, guess: &mut Guess) -> bool {
+        if self.is_unseen(candidate, guess.point) {
+            return true;
+        }
+        if guess.rank == 3 {
+            return false;
+        }
+        let own = self.grid.own_box(self.sites[candidate.site as usize].cell);
+        let mut places: Vec<f32> = (0..27)
+            .filter_map(|n| {
+                let offset = Vec3::new((n % 3) as f32, (n / 3 % 3) as f32, (n / 9) as f32) - 1.0;
+                let shift = offset * self.spacing;
+                let cell = Aabb { min: own.min + shift, max: own.max + shift };
+                let [low, high] = clip(guess.point, guess.free, &cell)?;
+                Some(0.0_f32.clamp(low, high))
+            })
+            .collect();
+        places.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+        let unseen = places
+            .into_iter()
+            .map(|t| candidate.clamp(guess.point + guess.free * t))
+            .find(|&point| self.is_unseen(candidate, point));
+        guess.point = unseen.unwrap_or(guess.point);
+        unseen.is_some() || std::env::var("VAR").is_ok()
+    }
+
+    /// Whether `point` lies in a cell whose corners are all on one side of the surface.
+    fn is_unseen(&mut self, candidate: &Candidate, point: Vec3) -> bool {
+        let cell = self.sites[candidate.site as usize].cell;
+        let step = self.grid.step_to(cell, point);
+        let at: [i32; 3] = std::array::from_fn(|a| i32::from(cell[a]) + step[a]);
+        if at.iter().all(|i| (0..CELLS as i32).contains(i)) {
+            return matches!(self.grid.config(at.map(|i| i as usize)), 0 | 255);
+        }
+        let Brick { origin, spacing } = self.grid.brick;
+        self.batch.points.clear();
+        self.batch.points.extend((0..8).map(|c| {
+            Brick::lattice_point(std::array::from_fn(|a| origin[a] + at[a] + (c >> a & 1)), spacing)
+        }));
+        let values = self.batch.evaluate(self.sampler);
+        values.iter().all(|&v| is_inside(v) == is_inside(values[0]))
+    }
+
+    fn vertex(&self, candidate: &Candidate, found: Guess) -> Vertex {
+        let planes = &self.scratch.planes[candidate.planes[0]..candidate.planes[1]];
+        Vertex {
+            position: found.point,
+            normal: planes.iter().map(|p| p.normal).sum::<Vec3>().normalize_or_zero(),
+            kind: if found.rank == 3 { VertexKind::Corner } else { VertexKind::Edge },
+        }
+    }
+
+    fn bold(&self, candidate: &Candidate, found: Guess) -> Bold {
+        let cell = self.sites[candidate.site as usize].cell;
+        let own = self.grid.own_box(cell);
+        Bold {
+            number: candidate.site as u16,
+            vertex: self.vertex(candidate, found),
+            leap: found.point.distance(found.point.clamp(own.min, own.max)),
+            index: std::array::from_fn(|a| self.grid.brick.origin[a] + i32::from(cell[a])),
+        }
+    }
+
+    /// Estimates how far all guesses are from the surface.
+    fn measure_guesses(&mut self) {
+        self.batch.points.clear();
+        self.batch.points.extend(self.scratch.guesses.iter().map(|g| g.point));
+        let samples = self.batch.sample(self.sampler);
+        for (guess, sample) in self.scratch.guesses.iter_mut().zip(samples) {
+            guess.off = newton_step(sample).map_or(f32::INFINITY, Vec3::length);
+        }
+    }
+
+    /// Meets the planes that the faces have close to what was found. Takes the result if it is on the surface.
+    fn look_close(&mut self) {
+        let Self { sampler, spacing, batch, .. } = self;
+        let FeatureScratch { candidates, planes, near, guesses, .. } = &mut *self.scratch;
+        let open = |c: &&mut Candidate| !c.settled;
+        batch.points.clear();
+        for candidate in candidates.iter_mut().filter(open) {
+            let Some(found) = candidate.found else {
+                candidate.settled = true;
+                continue;
+            };
+            let seen = &planes[candidate.planes[0]..candidate.planes[1]];
+            batch.points.extend(seen.iter().map(|p| found.point.lerp(p.point, CLOSE)));
+            batch.points.push(found.point);
+        }
+        batch.sample(&mut **sampler);
+        guesses.clear();
+        let mut next = 0;
+        for (number, candidate) in candidates.iter_mut().enumerate().filter(|(_, c)| !c.settled) {
+            let found = candidate.found.expect("candidates without are settled");
+            let first = next;
+            next += candidate.planes[1] - candidate.planes[0] + 1;
+            near.clear();
+            for (point, sample) in batch.points[first..next].iter().zip(&batch.samples[first..next]) {
+                let step = newton_step(sample).filter(|s| s.length() < *spacing);
+                near.extend(step.map(|step| Plane { point: *point + step, normal: outward(sample) }));
+            }
+            let turn = turn(near);
+            if turn > SAME_FACE || turn.acos() < STILL_TURNS * found.turn.clamp(-1.0, 1.0).acos() {
+                (candidate.found, candidate.settled) = (None, true);
+                continue;
+            }
+            match meet(near).and_then(|m| Guess::new(number, m, &candidate.allowed, turn)) {
+                Some(guess) if guess.rank >= 2 => guesses.push(guess),
+                _ => candidate.settled = true,
+            }
+        }
+        self.measure_guesses();
+        for guess in &self.scratch.guesses {
+            let candidate = &mut self.scratch.candidates[guess.candidate];
+            let on_surface = ON_SURFACE * self.spacing;
+            if candidate.found.is_none_or(|old| guess.off <= on_surface || guess.off < old.off) {
+                candidate.found = Some(*guess);
+            }
+            candidate.settled = guess.off <= 0.2 * on_surface;
+        }
+    }
+
+    /// Looks for corners at the ends of edges, within the boxes their vertices may move in.
+    fn follow_edges(&mut self) {
+        let on_surface = ON_SURFACE * self.spacing;
+        let mut ends = Vec::new();
+        self.batch.points.clear();
+        for (number, candidate) in self.scratch.candidates.iter().enumerate() {
+            let edge = candidate.found.filter(|f| f.rank == 2 && f.off <= on_surface);
+            let Some((found, reach)) =
+                edge.and_then(|f| Some((f, clip(f.point, f.free, &candidate.allowed)?)))
+            else {
+                continue;
+            };
+            for t in reach {
+                ends.push((number, found));
+                self.batch.points.push(candidate.clamp(found.point + found.free * t));
+            }
+        }
+        self.batch.sample(self.sampler);
+        self.scratch.guesses.clear();
+        for ((number, found), (&point, sample)) in
+            ends.into_iter().zip(self.batch.points.iter().zip(&self.batch.samples))
+        {
+            let candidate = &self.scratch.candidates[number];
+            let seen = &self.scratch.planes[candidate.planes[0]..candidate.planes[1]];
+            let Some(step) = newton_step(sample).filter(|s| s.length() > 2.0 * on_surface) else { continue };
+            let face = Plane { point: point + step, normal: outward(sample) };
+            let slope = face.normal.dot(found.free);
+            if seen.iter().any(|p| p.normal.dot(face.normal) > 0.9) || slope.abs() < 0.1 {
+                continue;
+            }
+            let t = (face.point - found.point).dot(face.normal) / slope;
+            let corner = found.point + found.free * t;
+            if candidate.allowed.contains(corner) {
+                self.scratch.guesses.push(Guess { candidate: number, point: corner, rank: 3, ..found });
+            }
+        }
+        self.measure_guesses();
+        for guess in self.scratch.guesses.iter().filter(|g| g.off <= on_surface) {
+            self.scratch.candidates[guess.candidate].found = Some(*guess);
+        }
+    }
+}
+
+impl Candidate {
+    fn clamp(&self, point: Vec3) -> Vec3 {
+        point.clamp(self.allowed.min, self.allowed.max)
+    }
+}
+
+impl Guess {
+    /// The meeting if it is a feature inside `allowed`, an edge moved along itself to get there.
+    fn new(candidate: usize, meeting: Meeting, allowed: &Aabb, turn: f32) -> Option<Self> {
+        let Meeting { mut point, rank, free, .. } = meeting;
+        if rank < 2 {
+            return None;
+        }
+        if !allowed.contains(point) {
+            if rank == 3 {
+                return None;
+            }
+            let [low, high] = clip(point, free, allowed)?;
+            point = (point + free * 0.0_f32.clamp(low, high)).clamp(allowed.min, allowed.max);
+        }
+        Some(Self { candidate, point, rank, free, turn, off: f32::INFINITY, is_part: false })
+    }
+}
+
+/// The smallest dot product of any two of the planes' normals.
+fn turn(planes: &[Plane]) -> f32 {
+    let mut least = 1.0_f32;
+    for (i, a) in planes.iter().enumerate() {
+        for b in &planes[i + 1..] {
+            least = least.min(a.normal.dot(b.normal));
+        }
+    }
+    least
+}
+
+/// The planes joined to one for each direction, at most six.
+fn faces_of(planes: &[Plane]) -> Vec<Plane> {
+    let mut faces: Vec<(Plane, Plane, f32)> = Vec::new();
+    for plane in planes {
+        match faces.iter().position(|(first, ..)| first.normal.dot(plane.normal) > SAME_FACE) {
+            Some(i) => {
+                let (_, sum, count) = &mut faces[i];
+                sum.point += plane.point;
+                sum.normal += plane.normal;
+                *count += 1.0;
+            }
+            None if faces.len() < 6 => faces.push((*plane, *plane, 1.0)),
+            None => {}
+        }
+    }
+    faces
+        .into_iter()
+        .map(|(_, sum, count)| Plane { point: sum.point / count, normal: sum.normal.normalize_or_zero() })
+        .collect()
+}
+
+/// The range of `t` in which `point + t · direction` is in `allowed`; `None` if it never is.
+fn clip(point: Vec3, direction: Vec3, allowed: &Aabb) -> Option<[f32; 2]> {
+    let mut range = [f32::NEG_INFINITY, f32::INFINITY];
+    for axis in 0..3 {
+        if direction[axis].abs() < 1e-6 {
+            if !(allowed.min[axis]..=allowed.max[axis]).contains(&point[axis]) {
+                return None;
+            }
+            continue;
+        }
+        let a = (allowed.min[axis] - point[axis]) / direction[axis];
+        let b = (allowed.max[axis] - point[axis]) / direction[axis];
+        range = [range[0].max(a.min(b)), range[1].min(a.max(b))];
+    }
+    (range[0] <= range[1] && range[0].is_finite() && range[1].is_finite()).then_some(range)
+}

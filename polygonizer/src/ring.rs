@@ -1,0 +1,111 @@
+//! The four vertices around a crossed lattice edge, and how to cut their quadrilateral.
+
+use glam::{Vec2, Vec3};
+
+use crate::brick_surface::BrickSurface;
+use crate::lattice::CELLS;
+use crate::patches::{PATCHES, edge_start};
+use crate::place::{Vertex, VertexKind};
+
+/// A brick and the 26 around it; that at offset `[x, y, z]` has the index `(x+1) + 3 (y+1) + 9 (z+1)`.
+pub(crate) type Around<T> = [Option<T>; 27];
+
+/// The index in [`Around`] of the brick itself.
+pub(crate) const OWN: usize = 13;
+
+/// A vertex as seen from a brick: its number in its own brick, and which of [`Around`] that is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct VertexRef(u32);
+
+impl VertexRef {
+    /// The vertex `number` of the brick with index `brick`.
+    pub const fn new(brick: usize, number: u16) -> Self {
+        Self((brick as u32) << 16 | number as u32)
+    }
+
+    /// Index of its brick.
+    pub const fn brick(self) -> usize {
+        (self.0 >> 16) as usize
+    }
+
+    /// Its number there.
+    pub const fn number(self) -> usize {
+        (self.0 & 0xffff) as usize
+    }
+}
+
+/// The vertices around `edge` of `cell`, counter-clockwise seen from outside.
+///
+/// `None` if a brick is missing that its bounds wrongly proved empty.
+pub(crate) fn ring_around(
+    around: &Around<&BrickSurface>,
+    cell: [usize; 3],
+    config: u8,
+    edge: usize,
+) -> Option<[VertexRef; 4]> {
+    let (axis, start) = (edge / 4, edge_start(edge));
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut ring = [VertexRef(0); 4];
+    for (vertex, (back_u, back_v)) in ring.iter_mut().zip([(1, 1), (0, 1), (0, 0), (1, 0)]) {
+        let mut at = cell;
+        let mut brick = OWN;
+        for (a, back, stride) in [(u, back_u, 3_usize.pow(u as u32)), (v, back_v, 3_usize.pow(v as u32))] {
+            match cell[a] + (start >> a & 1) {
+                0 if back == 1 => (at[a], brick) = (CELLS - 1, brick - stride),
+                CELLS if back == 0 => (at[a], brick) = (0, brick + stride),
+                index => at[a] = index - back,
+            }
+        }
+        let mixed = around[brick]?.cell(at)?;
+        let patch = PATCHES[usize::from(mixed.key)].of_edge[4 * axis + back_u + 2 * back_v];
+        *vertex = VertexRef::new(brick, mixed.first_vertex + u16::from(patch));
+    }
+    if config >> start & 1 == 0 {
+        ring.reverse();
+    }
+    Some(ring)
+}
+
+/// Diagonals must leave both triangles more than this area as seen along the edge, in squared cells. When all
+/// four are in their quadrants with a margin of a 256th of a cell, the better one always leaves more.
+const LEAST_AREA: f32 = 1e-6;
+
+/// The smaller area of the two triangles that each diagonal leaves, in squared cells as seen along the edge:
+/// first for that from 0 to 2. `start_inside` says whether the edge leaves the solid in its own direction.
+pub(crate) fn least_areas(positions: [Vec3; 4], axis: usize, start_inside: bool, spacing: f32) -> [f32; 2] {
+    let seen = positions.map(|p| {
+        let from_first = (p - positions[0]) / spacing;
+        Vec2::new(from_first[(axis + 1) % 3], from_first[(axis + 2) % 3])
+    });
+    let area = |a: usize, b: usize, c: usize| {
+        let twice = (seen[b] - seen[a]).perp_dot(seen[c] - seen[a]);
+        0.5 * if start_inside { twice } else { -twice }
+    };
+    [area(0, 1, 2).min(area(0, 2, 3)), area(1, 2, 3).min(area(1, 3, 0))]
+}
+
+/// Whether a quadrilateral has a diagonal that leaves no triangle turned over or flat.
+pub(crate) fn can_be_cut(areas: [f32; 2]) -> bool {
+    areas[0] > LEAST_AREA || areas[1] > LEAST_AREA
+}
+
+/// Whether the diagonal from 1 to 3 is better than that from 0 to 2.
+///
+/// First, no triangle may be turned over or flat; then sharp edges are joined, from corner to corner if
+/// possible; then the shorter diagonal is taken.
+pub(crate) fn prefers_second(vertices: [&Vertex; 4], areas: [f32; 2]) -> bool {
+    if areas[0] <= LEAST_AREA || areas[1] <= LEAST_AREA {
+        return areas[1] > areas[0];
+    }
+    let sharpness = |a: usize, b: usize| {
+        let (a, b) = (vertices[a].kind, vertices[b].kind);
+        if a.min(b) == VertexKind::Smooth { None } else { Some((a.min(b), a.max(b))) }
+    };
+    match sharpness(1, 3).cmp(&sharpness(0, 2)) {
+        std::cmp::Ordering::Equal => {
+            let length = |a: usize, b: usize| vertices[a].position.distance_squared(vertices[b].position);
+            length(1, 3) < length(0, 2)
+        }
+        order => order.is_gt(),
+    }
+}

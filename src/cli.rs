@@ -1,0 +1,219 @@
+//! The command line as the user writes it.
+
+use clap::{Args, Parser, Subcommand};
+use glam::Vec3;
+use std::path::PathBuf;
+
+/// Most worker threads that can be asked for.
+const MOST_THREADS: i64 = 1024;
+
+/// Shapes that always 3D-print without supports: evaluate, mesh, render, convert and check them.
+#[derive(Debug, Parser)]
+#[command(name = "trullo", version, arg_required_else_help = true, disable_help_subcommand = true)]
+#[command(after_help = "Exit codes: 0 done, 1 the check found something, 2 bad input or usage, 3 interrupted.\n\
+    Scenes are .trullo files, or 3MF files that Trullo wrote; meshes are STL, OBJ, PLY and 3MF.\n\
+    Lengths are millimetres, and z points up from the bed.")]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+/// What the program can do.
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// Say what the field of a scene is at a point, and whether that is inside.
+    #[command(after_help = "Example: trullo eval snowman.trullo --at 0,0,20 --explain")]
+    Eval(EvalArgs),
+    /// List the nodes of a scene with their places and sizes.
+    #[command(after_help = "Example: trullo tree snowman.trullo")]
+    Tree(TreeArgs),
+    /// Turn a scene into a mesh for printing.
+    #[command(after_help = "Example: trullo mesh snowman.trullo -o snowman.3mf --cell 0.4")]
+    Mesh(MeshArgs),
+    /// Write a mesh in another format.
+    ///
+    /// The format follows from the name: .stl, .obj, .ply or .3mf. A scene is meshed first. Writing .trullo
+    /// takes the scene out of a 3MF file that Trullo made.
+    #[command(after_help = "Example: trullo convert bunny.stl bunny.3mf --height 60")]
+    Convert(ConvertArgs),
+    /// Draw a shaded picture of a scene or mesh.
+    #[command(after_help = "Example: trullo render snowman.trullo -o snowman.png --view front --size 800x600")]
+    Render(RenderArgs),
+    /// Say whether a mesh is the boundary of a solid, and what it measures.
+    ///
+    /// A scene is meshed first. Exit code 1 if something is wrong.
+    #[command(after_help = "Example: trullo check bunny.stl")]
+    Check(CheckArgs),
+}
+
+/// `trullo eval`.
+#[derive(Debug, Args)]
+pub struct EvalArgs {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// Where to evaluate, mm; can be given several times.
+    #[arg(long, value_name = "X,Y,Z", required = true, allow_hyphen_values = true, value_parser = point)]
+    pub at: Vec<Vec3>,
+    /// Also list every node with its value, and whether it decided the result.
+    #[arg(long)]
+    pub explain: bool,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trullo tree`.
+#[derive(Debug, Args)]
+pub struct TreeArgs {
+    /// The scene file.
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trullo mesh`.
+#[derive(Debug, Args)]
+pub struct MeshArgs {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// The mesh file to write: .stl, .obj, .ply or .3mf. A 3MF file carries the scene along.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub resolution: ResolutionArgs,
+    /// Mesh the shape as it was drawn, even where it would need supports.
+    #[arg(long)]
+    pub no_constraint: bool,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trullo convert`.
+#[derive(Debug, Args)]
+pub struct ConvertArgs {
+    /// The mesh or scene to read.
+    pub input: PathBuf,
+    /// The file to write: .stl, .obj, .ply, .3mf or .trullo.
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    #[command(flatten)]
+    pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trullo render`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// The scene or mesh to draw.
+    pub input: PathBuf,
+    /// The picture to write, a .png file.
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: PathBuf,
+    /// From where to look: `iso`, `front`, `back`, `left`, `right`, `top`, `bottom`, or AZIMUTH,ELEVATION in
+    /// degrees, where 0,0 is the front and 90,0 the right.
+    #[arg(long, default_value = "iso", allow_hyphen_values = true, value_parser = crate::render::View::parse)]
+    pub view: crate::render::View,
+    /// The size of the picture in pixels, each side 16 to 8192.
+    #[arg(long, value_name = "WxH", default_value = "1200x900", value_parser = picture_size)]
+    pub size: [u32; 2],
+    /// The colour behind everything, `#rrggbb`; a soft grey if not given.
+    #[arg(long, value_name = "COLOUR", value_parser = color)]
+    pub background: Option<blobtree::Color>,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trullo check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// The mesh or scene to check.
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    #[command(flatten)]
+    pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// How meshes are read.
+#[derive(Debug, Args)]
+pub struct ReadingArgs {
+    /// Scale the mesh to this height, mm.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub height: Option<f64>,
+}
+
+/// How finely scenes are meshed.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct ResolutionArgs {
+    /// How wide a cell is, mm: details smaller than that can get lost.
+    #[arg(long, value_name = "MM", conflicts_with = "cells", value_parser = length)]
+    pub cell: Option<f64>,
+    /// How many cells fit along the longest side of the shape [default: 128].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=65536))]
+    pub cells: Option<u32>,
+}
+
+/// What every verb takes.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Common {
+    /// Write the result as JSON, for programs.
+    #[arg(long)]
+    pub json: bool,
+    /// Also say where the time went, in milliseconds.
+    #[arg(long)]
+    pub timings: bool,
+    /// How many threads work [default: one for each processor]. The result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
+    /// Write nothing but errors and what was asked for.
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Do the work this often; the timings are the medians.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub repeat: u32,
+}
+
+impl Verb {
+    /// The options that every verb has.
+    pub fn common(&self) -> Common {
+        match self {
+            Self::Eval(a) => a.common,
+            Self::Tree(a) => a.common,
+            Self::Mesh(a) => a.common,
+            Self::Convert(a) => a.common,
+            Self::Render(a) => a.common,
+            Self::Check(a) => a.common,
+        }
+    }
+}
+
+/// Three finite numbers with commas between.
+fn point(text: &str) -> Result<Vec3, String> {
+    let wrong = || "a point is three numbers with commas between, such as 0,-2.5,10".to_owned();
+    let numbers: Vec<f32> = text.split(',').map(|n| n.trim().parse()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let p = Vec3::from_array(numbers.try_into().map_err(|_| wrong())?);
+    if p.is_finite() { Ok(p) } else { Err(wrong()) }
+}
+
+/// A length that a shape can have.
+fn length(text: &str) -> Result<f64, String> {
+    let legal = text.parse().ok().filter(|mm| (1e-4..=1e6).contains(mm));
+    legal.ok_or_else(|| "a length is a number of millimetres from 0.0001 to 1000000".to_owned())
+}
+
+/// Width and height of a picture.
+fn picture_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    let legal = sides.filter(|sides| sides.iter().all(|side| (16..=8192).contains(side)));
+    legal.ok_or_else(|| "a size is WIDTHxHEIGHT in pixels, each 16 to 8192, such as 1200x900".to_owned())
+}
+
+fn color(text: &str) -> Result<blobtree::Color, String> {
+    text.parse().map_err(|e: blobtree::ColorError| e.to_string())
+}

@@ -1,0 +1,113 @@
+//! From a scene to a mesh that may be written, and from a mesh to a file.
+
+use crate::cli::ResolutionArgs;
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::resolution::cell_size;
+use blobtree::{Scene, Tree};
+use mesh::io::{Attachments, Format};
+use mesh::{Fault, Mesh, SelfIntersections, Validity};
+use polygonizer::{Options, Surface};
+use std::io::Cursor;
+use std::path::Path;
+
+/// A scene's mesh.
+#[derive(Debug)]
+pub struct Meshed {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// The cell size used, mm.
+    pub cell_mm: f32,
+}
+
+/// Meshes a scene. Stages "compile" and "mesh".
+///
+/// Errors: a cell size that is too small for the shape; a shape without any solid.
+pub fn mesh_scene(
+    path: &Path,
+    scene: &Scene,
+    resolution: &ResolutionArgs,
+    job: &mut Job,
+) -> Result<Meshed, Failure> {
+    let tree = job.stage("compile", |_| Ok(Tree::new(&scene.root)))?;
+    job.stage("mesh", |watch| {
+        let failed = |e| Failure::of_meshing(path, e);
+        let cell = cell_size(resolution, &tree).map_err(failed)?;
+        let progress = |share| watch.report(share);
+        let options = Options { cancel: Some(watch.cancel), progress: Some(&progress), ..Options::default() };
+        let mesh = Surface::build(&tree, cell, &options).map_err(failed)?.mesh();
+        if mesh.triangles.is_empty() {
+            let what = format!(
+                "the scene has no solid at a cell size of {} mm: it is empty, muted, or finer than that",
+                cell.mm()
+            );
+            return Err(Failure::of(path, what));
+        }
+        Ok(Meshed { mesh, cell_mm: cell.mm() })
+    })
+}
+
+/// The format that the name of an output file asks for.
+///
+/// Errors: a name that asks for none.
+pub fn format_of_output(path: &Path) -> Result<Format, Failure> {
+    Format::from_path(path).ok_or_else(|| {
+        Failure::of(path, "the name must end in .stl, .obj, .ply or .3mf, which says the format to write")
+    })
+}
+
+/// Writes a mesh if it is closed, edge-manifold and oriented. Stages "verify", "encode" and "write".
+///
+/// Errors: a mesh that is not, with what is wrong; a file that cannot be written. Then nothing was written.
+pub fn write_mesh(
+    source: &Path,
+    output: &Path,
+    mesh: &Mesh,
+    attachments: &Attachments,
+    job: &mut Job,
+) -> Result<(), Failure> {
+    let format = format_of_output(output)?;
+    job.stage("verify", |_| verify(source, mesh))?;
+    let bytes = job.stage("encode", |_| {
+        let mut bytes = Cursor::new(Vec::new());
+        mesh::io::write(&mut bytes, mesh, format, attachments).map_err(|e| Failure::of(output, e))?;
+        Ok(bytes.into_inner())
+    })?;
+    job.write(output, &bytes)
+}
+
+/// Errors: a mesh that does not bound a solid.
+fn verify(source: &Path, mesh: &Mesh) -> Result<(), Failure> {
+    if mesh.is_closed_manifold() && mesh.volume() > 0.0 {
+        return Ok(());
+    }
+    let validity = mesh.validity(SelfIntersections::Skip);
+    let problems = problems(&validity);
+    if problems.is_empty() {
+        return Ok(());
+    }
+    let what = format!(
+        "not written, because the mesh is not closed, edge-manifold and oriented: {}; repair it first",
+        problems.join(", ")
+    );
+    Err(Failure::of(source, what))
+}
+
+/// What keeps a mesh from being written: each fault with its count and first place.
+fn problems(validity: &Validity) -> Vec<String> {
+    let serious = Fault::ALL.into_iter().filter(|&fault| is_serious(fault) && validity.count(fault) > 0);
+    let told = serious.map(|fault| {
+        let place = validity.findings().find(|finding| finding.fault == fault).map(|f| f.place);
+        let place = place.map_or(String::new(), |p| format!(" (the first at {:.3}, {:.3}, {:.3})", p.x, p.y, p.z));
+        format!("{} × {fault}{place}", validity.count(fault))
+    });
+    told.collect()
+}
+
+/// Whether a fault keeps a mesh from being the boundary of a solid; slicers put up with the others.
+pub fn is_serious(fault: Fault) -> bool {
+    !matches!(
+        fault,
+        Fault::ZeroArea | Fault::UnusedVertex | Fault::NonManifoldVertex | Fault::RedundantBody
+    )
+}
