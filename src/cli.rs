@@ -4,6 +4,8 @@ use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use std::path::PathBuf;
 
+/// Most pixels in a picture, which bounds memory: about 64 bytes each.
+const MOST_PIXELS: u32 = 1 << 23;
 /// Most worker threads that can be asked for.
 const MOST_THREADS: i64 = 1024;
 
@@ -81,6 +83,9 @@ pub struct MeshArgs {
     pub output: PathBuf,
     #[command(flatten)]
     pub resolution: ResolutionArgs,
+    /// Leave out triangles while the surface moves by no more than this, mm.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub simplify: Option<f64>,
     /// Mesh the shape as it was drawn, even where it would need supports.
     #[arg(long)]
     pub no_constraint: bool,
@@ -115,7 +120,7 @@ pub struct RenderArgs {
     /// degrees, where 0,0 is the front and 90,0 the right.
     #[arg(long, default_value = "iso", allow_hyphen_values = true, value_parser = crate::render::View::parse)]
     pub view: crate::render::View,
-    /// The size of the picture in pixels, each side 16 to 8192.
+    /// The size of the picture in pixels, each side 16 to 4096, at most 8 million in all.
     #[arg(long, value_name = "WxH", default_value = "1200x900", value_parser = picture_size)]
     pub size: [u32; 2],
     /// The colour behind everything, `#rrggbb`; a soft grey if not given.
@@ -210,8 +215,11 @@ fn length(text: &str) -> Result<f64, String> {
 /// Width and height of a picture.
 fn picture_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-    let legal = sides.filter(|sides| sides.iter().all(|side| (16..=8192).contains(side)));
-    legal.ok_or_else(|| "a size is WIDTHxHEIGHT in pixels, each 16 to 8192, such as 1200x900".to_owned())
+    let legal = sides.filter(|sides| sides.iter().all(|side| (16..=4096).contains(side)));
+    legal.filter(|[width, height]| width * height <= MOST_PIXELS).ok_or_else(|| {
+        "a size is WIDTHxHEIGHT in pixels, such as 1200x900: each 16 to 4096, and no more than 8 million in all"
+            .to_owned()
+    })
 }
 
 fn color(text: &str) -> Result<blobtree::Color, String> {

@@ -8,7 +8,7 @@ use mesh::io::{Attachments, Format, Loaded, ReadLimits};
 use mesh::{Mesh, MeshDistance};
 use sha2::{Digest, Sha256};
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek};
+use std::io::{self, BufRead, BufReader, Read, Seek};
 use std::path::{Component, Path};
 use std::sync::Arc;
 
@@ -164,7 +164,16 @@ impl MeshSource for MeshesBeside<'_> {
 /// The hash of a whole file, which is rewound; of its first `limit` bytes if it is longer.
 fn sha256(file: &mut File, limit: u64) -> io::Result<String> {
     let mut hash = Sha256::new();
-    io::copy(&mut file.by_ref().take(limit), &mut hash)?;
+    let mut reader = BufReader::with_capacity(1 << 16, file.by_ref().take(limit));
+    loop {
+        let bytes = reader.fill_buf()?;
+        if bytes.is_empty() {
+            break;
+        }
+        hash.update(bytes);
+        let used = bytes.len();
+        reader.consume(used);
+    }
     file.rewind()?;
     Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
 }

@@ -88,11 +88,8 @@ pub(crate) fn norm<S: Scalar>(u: S, v: S, s: f32) -> (S, S, S) {
     let (large, small, u_large) = if v.value() > u.value() { (v, u, false) } else { (u, v, true) };
     // The slope across the axis is 0 for every s above 1.
     let across = if s == 1.0 { one } else { zero };
-    let (value, by_large, by_small) = if small.value() <= 0.0 {
-        (large, one, across)
-    } else {
-        larger_factored_out(large, small, s)
-    };
+    let (value, by_large, by_small) =
+        if small.value() <= 0.0 { (large, one, across) } else { larger_factored_out(large, small, s) };
     if u_large { (value, by_large, by_small) } else { (value, by_small, by_large) }
 }
 
@@ -136,8 +133,7 @@ pub(crate) fn soft_cut<S: Scalar>(f: Slope<S>, g: Slope<S>, s: f32) -> Slope<S> 
         return f;
     }
     let u = complement(f);
-    let outside =
-        if u.value.value() < 0.0 { add(u, g) } else { Ricci(s).both(u, g) };
+    let outside = if u.value.value() < 0.0 { add(u, g) } else { Ricci(s).both(u, g) };
     solid_part(complement(outside))
 }
 
@@ -161,25 +157,35 @@ const FULLEST: f32 = 1.0 + (1.0 - CLEAN) / (3.0 + CLEAN);
 /// operator.
 #[inline(always)]
 pub(crate) fn gradient_blend<S: Scalar>(f: Slope<S>, g: Slope<S>) -> Slope<S> {
-    let (large, small) = if g.value.value() > f.value.value() { (g, f) } else { (f, g) };
-    if small.value.value() <= CLEAN * large.value.value() {
-        return large;
+    let Some((by_f, by_g)) = gradient_blend_weights(f, g) else {
+        return union(f, g);
+    };
+    let direction: Triple<S> = sum(scaled(f.gradient, by_f), scaled(g.gradient, by_g));
+    Slope::new(f.value * by_f + g.value * by_g, direction)
+}
+
+/// The derivatives of [`gradient_blend`] by its two values, whose weighted sum it is; `None` where it is the
+/// union.
+#[inline(always)]
+pub(crate) fn gradient_blend_weights<S: Scalar>(f: Slope<S>, g: Slope<S>) -> Option<(S, S)> {
+    let f_large = g.value.value() <= f.value.value();
+    let (large, small) = if f_large { (f.value, g.value) } else { (g.value, f.value) };
+    if small.value() <= CLEAN * large.value() {
+        return None;
     }
     let along = dot(f.gradient, g.gradient);
     let lengths = dot(f.gradient, f.gradient) * dot(g.gradient, g.gradient);
     let aligned = along * along / (lengths + S::of(1e-20));
     let opening = (S::of(1.0) - aligned) * S::of(1.0 - CLEAN);
-    let t = small.value / large.value;
+    let t = small / large;
     let into = t - S::of(1.0) + opening;
     if into.value() <= 0.0 || opening.value() < 1e-5 {
-        return large;
+        return None;
     }
     let steepness = S::of(1.0) / (opening * (S::of(4.0) - opening));
-    let rise = S::of(1.0) + into * into * steepness;
     let by_small = (into + into) * steepness;
-    let by_large = rise - t * by_small;
-    let direction: Triple<S> = sum(scaled(large.gradient, by_large), scaled(small.gradient, by_small));
-    Slope::new(large.value * rise, direction)
+    let by_large = S::of(1.0) + into * into * steepness - t * by_small;
+    Some(if f_large { (by_large, by_small) } else { (by_small, by_large) })
 }
 
 /// [`gradient_blend`] of fields whose gradients are given in another space, from which `frame` leads to the
@@ -242,6 +248,11 @@ impl Interval {
         let plain = self.union(g);
         let clean = smaller(self.hi, g.hi) <= CLEAN * plain.lo;
         if clean { plain } else { Self { lo: plain.lo, hi: plain.hi * FULLEST }.loosened() }
+    }
+
+    /// The range of values that may be off by `by`, but not below 0.
+    pub(crate) fn widened(self, by: f32) -> Self {
+        Self { lo: larger(self.lo - by, 0.0), hi: self.hi + by }
     }
 
     /// A little wider, for what rounding may have done; 0 stays 0.

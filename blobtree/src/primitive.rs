@@ -86,9 +86,11 @@ pub struct Point {
     #[schemars(with = "[f32; 3]")]
     pub center: Vec3,
     /// Distance from the centre to the surface, mm.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub radius: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 1.2017 times the radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -103,9 +105,11 @@ pub struct Segment {
     #[schemars(with = "[f32; 3]")]
     pub to: Vec3,
     /// Distance from the axis to the surface, mm.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub radius: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 1.2017 times the radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -114,9 +118,11 @@ pub struct Segment {
 #[serde(deny_unknown_fields)]
 pub struct Polyline {
     /// At least one point, at most 4096.
+    #[schemars(length(min = 1, max = 4096))]
     pub points: Vec<PolylinePoint>,
     /// How far the influence reaches beyond the surface, mm. Default: 1.2017 times the largest radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -128,6 +134,7 @@ pub struct PolylinePoint {
     #[schemars(with = "[f32; 3]")]
     pub at: Vec3,
     /// Distance from the axis to the surface here, mm.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub radius: f32,
 }
 
@@ -143,11 +150,14 @@ pub struct Disc {
     #[schemars(with = "[f32; 3]")]
     pub normal: Vec3,
     /// Distance from the centre to the rim of the surface, mm; at least half the thickness.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub radius: f32,
     /// Thickness from surface to surface, mm.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub thickness: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 0.6008 times the thickness.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -157,12 +167,14 @@ pub struct Disc {
 pub struct Polygon {
     /// At least 3 corners in one plane (to 1 % of their extent), at most 1024, in order, mm. Need not be
     /// convex; crossing edges count even-odd.
-    #[schemars(with = "Vec<[f32; 3]>")]
+    #[schemars(with = "Vec<[f32; 3]>", length(min = 3, max = 1024))]
     pub points: Vec<Vec3>,
     /// Thickness from surface to surface, mm; the outline grows by half of it.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub thickness: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 0.6008 times the thickness.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -178,9 +190,11 @@ pub struct Cuboid {
     pub size: Vec3,
     /// Radius of the rounded edges, mm; 0 for sharp edges, at most half the shortest side.
     #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0, max = 100_000.0))]
     pub rounding: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 0.6008 times the shortest side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -195,10 +209,12 @@ pub struct Cylinder {
     #[schemars(with = "[f32; 3]")]
     pub to: Vec3,
     /// Radius, mm.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub radius: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 1.2017 times the radius or half the
     /// length, whichever is smaller.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -213,13 +229,16 @@ pub struct Cone {
     #[schemars(with = "[f32; 3]")]
     pub to: Vec3,
     /// Radius of the base, mm; 0 for a tip.
+    #[schemars(range(min = 0.0, max = 100_000.0))]
     pub radius_from: f32,
     /// Radius of the top, mm; 0 for a tip. Not both may be 0.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 100_000.0))]
     pub radius_to: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 0.6008 times the larger radius or half
     /// the length, whichever is smaller.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -235,11 +254,14 @@ pub struct Torus {
     #[schemars(with = "[f32; 3]")]
     pub normal: Vec3,
     /// Distance from the centre to the middle of the tube, mm.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub major_radius: f32,
     /// Radius of the tube, mm.
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub minor_radius: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 1.2017 times the minor radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -255,6 +277,7 @@ pub struct Ellipsoid {
     pub radii: Vec3,
     /// How far the influence reaches beyond the surface, mm. Default: 1.2017 times the smallest radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: Option<f32>,
 }
 
@@ -271,9 +294,11 @@ pub struct HalfSpace {
     pub normal: Vec3,
     /// How far from `point` the solid goes on, mm: fields must end somewhere. Default: 500.
     #[serde(default = "far")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub extent: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 5.
     #[serde(default = "five")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: f32,
 }
 

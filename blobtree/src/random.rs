@@ -84,7 +84,12 @@ impl RandomTree {
         let falloff = (self.rng.u32(..3) == 0).then(|| self.size());
         match self.rng.u32(..11 + u32::from(self.mesh.is_some())) {
             0 => Primitive::Point(Point { center: self.place(), radius: self.size(), falloff }),
-            1 => Primitive::Segment(Segment { from: self.place(), to: self.place(), radius: self.size(), falloff }),
+            1 => Primitive::Segment(Segment {
+                from: self.place(),
+                to: self.place(),
+                radius: self.size(),
+                falloff,
+            }),
             2 => Primitive::Polyline(self.polyline(falloff)),
             3 => Primitive::Disc(self.disc(falloff)),
             4 => Primitive::Polygon(self.polygon(falloff)),

@@ -4,12 +4,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What field formulas need of a number. Comparisons look at the value alone.
 pub(crate) trait Scalar:
-    Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     fn of(value: f32) -> Self;
     fn value(self) -> f32;

@@ -142,6 +142,7 @@ pub struct Taper {
     /// Where it ends, mm; above `start`.
     pub end: f32,
     /// The scale from `end` on, 0.01 to 100.
+    #[schemars(range(min = 0.01, max = 100.0))]
     pub scale: f32,
 }
 
@@ -153,6 +154,7 @@ pub struct Twist {
     #[serde(default = "z")]
     pub axis: Axis,
     /// Turn for each mm along the axis, counter-clockwise seen against it, −90 to 90 degrees.
+    #[schemars(range(min = -90.0, max = 90.0))]
     pub degrees_per_mm: f32,
 }
 
@@ -177,6 +179,7 @@ pub struct Bend {
     /// Where it ends, mm; above `start`.
     pub end: f32,
     /// How far the axis turns, −180 to 180 degrees, not 0.
+    #[schemars(range(min = -180.0, max = 180.0))]
     pub degrees: f32,
 }
 

@@ -37,7 +37,9 @@ impl WarpMap {
     #[inline(always)]
     pub fn child_from_parent<S: Scalar>(&self, p: Triple<S>) -> Warped<S> {
         match self {
-            Self::Affine(w) => Warped { place: w.child_from_parent.apply(p), rows: w.child_from_parent.rows() },
+            Self::Affine(w) => {
+                Warped { place: w.child_from_parent.apply(p), rows: w.child_from_parent.rows() }
+            }
             Self::Taper(w) => w.child_from_parent(p),
             Self::Twist(w) => w.child_from_parent(p),
             Self::Bend(w) => w.child_from_parent(p),
@@ -112,7 +114,10 @@ pub(crate) struct AffineWarp {
 
 impl AffineWarp {
     pub fn new(child_from_parent: &DAffine3) -> Self {
-        Self { child_from_parent: Frame::new(*child_from_parent), parent_from_child: child_from_parent.inverse() }
+        Self {
+            child_from_parent: Frame::new(*child_from_parent),
+            parent_from_child: child_from_parent.inverse(),
+        }
     }
 }
 
@@ -289,7 +294,8 @@ impl BendMap {
             Stretch::Arc => {
                 let rho2 = (along * along + out * out).larger(S::of(1e-20));
                 let rho = rho2.sqrt();
-                let turn = S::of(self.angle_of(along.value(), out.value()) - along.value().atan2(out.value()));
+                let turn =
+                    S::of(self.angle_of(along.value(), out.value()) - along.value().atan2(out.value()));
                 place[w] = S::of(self.start) + radius * (along.atan2(out) + turn);
                 place[u] = side * (radius - rho);
                 (rows[w][w], rows[w][u]) = (radius * out / rho2, side * radius * along / rho2);

@@ -122,7 +122,9 @@ fn central_difference(tree: &Tree, p: Vec3, scale: f32) -> Option<Vec3> {
 #[test]
 fn gradients_are_exact_for_every_type_of_node() {
     let mut tried = std::collections::BTreeMap::<&str, usize>::new();
-    for (seed, root) in random_trees(2500..3000, 1).chain(random_trees(3000..5400, 2)).chain(random_trees(6000..6300, 4)) {
+    for (seed, root) in
+        random_trees(2500..3000, 1).chain(random_trees(3000..5400, 2)).chain(random_trees(6000..6300, 4))
+    {
         let tree = Tree::new(&root);
         let arena = arena(&tree);
         if arena.is_empty() {

@@ -211,8 +211,11 @@ impl Bvh {
         let p = p.as_dvec3();
         let (point, feature) = closest_on_triangle(p, self.corners[slot as usize]);
         let distance_squared = point.distance_squared(p);
-        let wins_tie = || best.slot == Best::NO_SLOT || self.ids[slot as usize] < self.ids[best.slot as usize];
-        if distance_squared < best.distance_squared || (distance_squared == best.distance_squared && wins_tie()) {
+        let wins_tie =
+            || best.slot == Best::NO_SLOT || self.ids[slot as usize] < self.ids[best.slot as usize];
+        if distance_squared < best.distance_squared
+            || (distance_squared == best.distance_squared && wins_tie())
+        {
             *best = Best { distance_squared, point, slot, feature };
         }
     }

@@ -54,7 +54,8 @@ fn branch(references: &mut [Reference], first: u32, level: u32) -> Branch {
     let mut parts: Vec<(Bounds, &mut [Reference])> = vec![(bounds_of(references), references)];
     while parts.len() < WIDTH {
         let splittable = (0..parts.len()).filter(|&i| parts[i].1.len() > LEAF);
-        let Some(largest) = splittable.max_by(|&i, &j| half_area(&parts[i].0).total_cmp(&half_area(&parts[j].0)))
+        let Some(largest) =
+            splittable.max_by(|&i, &j| half_area(&parts[i].0).total_cmp(&half_area(&parts[j].0)))
         else {
             break;
         };
@@ -70,9 +71,8 @@ fn branch(references: &mut [Reference], first: u32, level: u32) -> Branch {
         starts.push(next);
         next += part.len() as u32;
     }
-    let descend = |((bounds, part), start): ((Bounds, &mut [Reference]), u32)| {
-        (bounds, branch(part, start, level + 1))
-    };
+    let descend =
+        |((bounds, part), start): ((Bounds, &mut [Reference]), u32)| (bounds, branch(part, start, level + 1));
     Branch::Inner(if count > PARALLEL {
         parts.into_par_iter().zip(starts).map(descend).collect()
     } else {

@@ -66,7 +66,9 @@ impl Mesh {
 
 /// How many later triangles have a box that touches, and which of them cross, in ascending order.
 fn crossing_partners(mesh: &Mesh, bvh: &Bvh, triangle: [u32; 3], index: u32) -> (usize, Vec<u32>) {
-    let Some(corners) = mesh.corners(triangle).filter(|_| !is_collapsed(triangle)) else { return (0, Vec::new()) };
+    let Some(corners) = mesh.corners(triangle).filter(|_| !is_collapsed(triangle)) else {
+        return (0, Vec::new());
+    };
     let [a, b, c] = corners;
     let bounds = Bounds { min: a.min(b).min(c), max: a.max(b).max(c) };
     let (mut looked_at, mut partners) = (0, Vec::new());

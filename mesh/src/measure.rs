@@ -72,11 +72,7 @@ impl Mesh {
     /// The box of all vertices that triangles use, mm. [`Bounds::EMPTY`] without triangles.
     pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        self.triangles
-            .iter()
-            .filter_map(|&t| self.corners(t))
-            .flatten()
-            .for_each(|p| bounds.include(p));
+        self.triangles.iter().filter_map(|&t| self.corners(t)).flatten().for_each(|p| bounds.include(p));
         bounds
     }
 
@@ -257,7 +253,8 @@ mod tests {
 
     #[test]
     fn a_tetrahedron_has_the_volume_and_centre_of_its_corners() {
-        let corners = [Vec3::ZERO, Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.0, 4.0, 0.0), Vec3::new(0.0, 0.0, 5.0)];
+        let corners =
+            [Vec3::ZERO, Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.0, 4.0, 0.0), Vec3::new(0.0, 0.0, 5.0)];
         let mass = tetrahedron(corners).mass().unwrap();
         assert!(close(mass.volume, 10.0, 1e-12));
         assert!(mass.centre.abs_diff_eq(DVec3::new(0.75, 1.0, 1.25), 1e-12));
@@ -300,7 +297,8 @@ mod tests {
     fn open_flat_and_broken_meshes_have_no_mass_but_do_not_panic() {
         assert_eq!(Mesh::default().mass(), None);
         assert_eq!(Mesh::default().bounds(), Bounds::EMPTY);
-        let sheet = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2], [0, 1, 7]] };
+        let sheet =
+            Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2], [0, 1, 7]] };
         assert_eq!(sheet.mass(), None);
         assert_eq!(sheet.area(), 0.5);
         let nan = Mesh { positions: vec![Vec3::NAN, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]] };

@@ -29,7 +29,8 @@ impl Normals {
             let [a, b, c] = corners;
             let normal = (b - a).cross(c - a).normalize_or_zero();
             for i in 0..3 {
-                let (to_next, to_previous) = (corners[(i + 1) % 3] - corners[i], corners[(i + 2) % 3] - corners[i]);
+                let (to_next, to_previous) =
+                    (corners[(i + 1) % 3] - corners[i], corners[(i + 2) % 3] - corners[i]);
                 let angle = to_next.cross(to_previous).length().atan2(to_next.dot(to_previous));
                 vertices[triangle[i] as usize] += normal * angle;
             }

@@ -48,7 +48,13 @@ pub fn uv_sphere(centre: Vec3, radius: f32, segments: u32, rings: u32) -> Mesh {
         let j = (i + 1) % segments;
         triangles.push([0, first(1) + j, first(1) + i]);
         for ring in 1..rings - 1 {
-            push_quad(&mut triangles, first(ring) + i, first(ring) + j, first(ring + 1) + j, first(ring + 1) + i);
+            push_quad(
+                &mut triangles,
+                first(ring) + i,
+                first(ring) + j,
+                first(ring + 1) + j,
+                first(ring + 1) + i,
+            );
         }
         triangles.push([top, first(rings - 1) + i, first(rings - 1) + j]);
     }

@@ -168,9 +168,13 @@ impl Work {
         let (target, _) = self.target(keep, remove);
         if self.keeps_topology(keep, remove)
             && self.keeps_shape(keep, remove, target)
-            && self.keeps_old_vertices(keep, remove, target)
+            && let Some(moves) = self.rehomed(keep, remove, target)
         {
             self.collapse(keep, remove, target);
+            for [old, from, to] in moves {
+                self.absorbed[from as usize].retain(|&v| v != old);
+                self.absorbed[to as usize].push(old);
+            }
         }
     }
 
@@ -216,31 +220,50 @@ impl Work {
             })
     }
 
-    /// Whether the old vertices that this collapse can concern stay within the tolerance.
-    fn keeps_old_vertices(&self, keep: u32, remove: u32, target: Vec3) -> bool {
-        let moved = |w: u32| if w == keep || w == remove { target } else { self.positions[w as usize] };
-        let is_left = |t: &[u32; 3]| !(t.contains(&keep) && t.contains(&remove));
-        let fan = |v: u32| self.around[v as usize].iter().map(|&t| self.triangles[t as usize]).filter(is_left);
+    /// Which old vertices must change hands so that all stay within the tolerance of their triangles: `[old, from, to]`
+    /// each. None if the collapse would leave one too far from every triangle around.
+    fn rehomed(&self, keep: u32, remove: u32, target: Vec3) -> Option<Vec<[u32; 3]>> {
+        let mut concerned = self.neighbours(keep);
+        concerned.extend(self.neighbours(remove));
+        concerned.sort_unstable();
+        concerned.dedup();
+        let ring = self.ring_after(&concerned, keep, remove, target);
         let most = self.tolerance * self.tolerance;
-        let near = |v: u32, faces: &[[Vec3; 3]]| {
-            self.absorbed[v as usize].iter().all(|&old| {
+        let mut moves = Vec::new();
+        for &v in &concerned {
+            let owner = if v == remove { keep } else { v };
+            for &old in &self.absorbed[v as usize] {
                 let p = self.old_positions[old as usize].as_dvec3();
-                faces.iter().any(|&corners| closest_on_triangle(p, corners).0.distance_squared(p) <= most)
+                let near = |face: &&([u32; 3], [Vec3; 3])| {
+                    closest_on_triangle(p, face.1).0.distance_squared(p) <= most
+                };
+                if !ring.iter().filter(|face| face.0.contains(&owner)).any(|face| near(&face)) {
+                    moves.push([old, owner, ring.iter().find(near)?.0[0]]);
+                }
+            }
+        }
+        Some(moves)
+    }
+
+    /// The triangles around some vertices as they will be after a collapse.
+    fn ring_after(
+        &self,
+        vertices: &[u32],
+        keep: u32,
+        remove: u32,
+        target: Vec3,
+    ) -> Vec<([u32; 3], [Vec3; 3])> {
+        let mut faces: Vec<u32> = vertices.iter().flat_map(|&v| &self.around[v as usize]).copied().collect();
+        faces.sort_unstable();
+        faces.dedup();
+        let triangles = faces.into_iter().map(|t| self.triangles[t as usize]);
+        triangles
+            .filter(|t| !(t.contains(&keep) && t.contains(&remove)))
+            .map(|t| {
+                let t = t.map(|v| if v == remove { keep } else { v });
+                (t, t.map(|v| if v == keep { target } else { self.positions[v as usize] }))
             })
-        };
-        let mut faces: Vec<[Vec3; 3]> = fan(keep).chain(fan(remove)).map(|t| t.map(moved)).collect();
-        let mut neighbours = self.neighbours(keep);
-        neighbours.extend(self.neighbours(remove));
-        neighbours.retain(|&v| v != keep && v != remove);
-        neighbours.sort_unstable();
-        neighbours.dedup();
-        near(keep, &faces)
-            && near(remove, &faces)
-            && neighbours.into_iter().all(|v| {
-                faces.clear();
-                faces.extend(fan(v).map(|t| t.map(moved)));
-                near(v, &faces)
-            })
+            .collect()
     }
 
     fn collapse(&mut self, keep: u32, remove: u32, target: Vec3) {
@@ -334,8 +357,10 @@ mod tests {
     fn deviation(a: &Mesh, b: &Mesh) -> f64 {
         let one_way = |from: &Mesh, to: &Mesh| {
             let to = Bvh::new(to);
-            let middles = from.triangles.iter().filter_map(|&t| from.corners(t)).map(|[a, b, c]| (a + b + c) / 3.0);
-            let farthest = |far: f64, p: Vec3| far.max(to.closest(p, f64::INFINITY).map_or(0.0, |c| c.distance));
+            let middles =
+                from.triangles.iter().filter_map(|&t| from.corners(t)).map(|[a, b, c]| (a + b + c) / 3.0);
+            let farthest =
+                |far: f64, p: Vec3| far.max(to.closest(p, f64::INFINITY).map_or(0.0, |c| c.distance));
             middles.chain(from.positions.iter().copied()).fold(0.0, farthest)
         };
         one_way(a, b).max(one_way(b, a))

@@ -8,12 +8,12 @@ use std::fmt;
 
 use glam::Vec3;
 
+use crate::Mesh;
 use crate::bvh::Bvh;
 use crate::components::{Body, Components, DisjointSets, bodies_of, components_of};
 use crate::crossings::Crossings;
 use crate::edges::{EdgeTable, is_collapsed};
 use crate::winding::Winding;
-use crate::Mesh;
 
 /// Places listed of each kind of finding; the counts go on.
 pub const MOST_PLACES: usize = 100;
@@ -347,7 +347,8 @@ fn check_bodies(mesh: &Mesh, edges: &EdgeTable, report: &mut Validity) {
     let components = components_of(mesh.triangles.len(), edges);
     let bodies = bodies_of(mesh, edges, &components);
     // Unusable triangles are parts of one.
-    report.bodies = bodies.len() - report.count(Fault::CollapsedTriangle) - report.count(Fault::MissingVertex);
+    report.bodies =
+        bodies.len() - report.count(Fault::CollapsedTriangle) - report.count(Fault::MissingVertex);
     let lone_outward = bodies.len() == 1 && bodies[0].volume > 0.0;
     if lone_outward || bodies.iter().all(|b| !b.closed) {
         return;
@@ -440,14 +441,14 @@ mod tests {
         let welded = |offset: Vec3| {
             let mut mesh = one.clone();
             mesh.append(&cuboid(offset, offset + Vec3::ONE));
-            let first_at = |p: Vec3| mesh.positions.iter().position(|&q| q == p).expect("p is a vertex") as u32;
+            let first_at =
+                |p: Vec3| mesh.positions.iter().position(|&q| q == p).expect("p is a vertex") as u32;
             mesh.triangles =
                 mesh.triangles.iter().map(|t| t.map(|v| first_at(mesh.positions[v as usize]))).collect();
             mesh
         };
-        let without_unused = |mesh: &Mesh| {
-            faults(mesh).into_iter().filter(|f| f.0 != Fault::UnusedVertex).collect::<Vec<_>>()
-        };
+        let without_unused =
+            |mesh: &Mesh| faults(mesh).into_iter().filter(|f| f.0 != Fault::UnusedVertex).collect::<Vec<_>>();
         assert_eq!(without_unused(&welded(Vec3::ONE)), [(Fault::NonManifoldVertex, 1)]);
         assert_eq!(
             without_unused(&welded(Vec3::new(1.0, 1.0, 0.0))),

@@ -10,8 +10,8 @@ use crate::bvh::{Bvh, Node, WIDTH};
 
 /// Clusters farther away than this many times their radius are replaced by their expansion.
 ///
-/// Pinned by the tests: 2 keeps the error below 1e-2 at points off the surface on soups (1.5 does not), and 3 costs
-/// twice the time for digits that a decision at one half does not need.
+/// 2 keeps the error below 1e-2 at random points on soups and solids, as the tests ask; 3 costs twice the time for
+/// digits that a decision at one half does not need.
 const BETA: f32 = 2.0;
 
 /// The far field of a cluster of triangles: moments of its normals about its middle, divided by 4π.

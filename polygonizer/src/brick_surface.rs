@@ -43,8 +43,10 @@ pub(crate) struct BrickSurface {
 pub(crate) struct Bold {
     /// Number of the vertex.
     pub number: u16,
-    /// What it would be.
+    /// What it would be, at the first place.
     pub vertex: Vertex,
+    /// Where it could be, best first.
+    pub places: [Vec3; 3],
     /// How far it leaves its cell, mm.
     pub leap: f32,
     /// Its cell's lattice index.
@@ -142,7 +144,7 @@ impl<'f> Worker<'f> {
         if !self.enter_block(block_of(key)) {
             return None;
         }
-        self.grid.brick = self.lattice.brick(key);
+        self.grid.move_to(self.lattice.brick(key));
         let region = self.grid.brick.region();
         let bounds = self.sampler.enter(region);
         if !may_cross(bounds) {

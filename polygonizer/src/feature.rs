@@ -9,7 +9,7 @@
 //! **Source:** Kobbelt et al. 2001, *Feature sensitive surface extraction*. **Departs:** planes are taken
 //! near the feature, the vertex may leave its cell (see [`Grid::feature_box`]), and the result is checked.
 
-use blobtree::{Aabb, Brick, Sampler};
+use blobtree::{Aabb, Brick, ISO, Sample, Sampler};
 use glam::Vec3;
 
 use crate::crossings::Crossings;
@@ -45,6 +45,9 @@ const NEAR_SURFACE: f32 = 0.05;
 /// Rounds of looking at the faces close to the feature.
 const ROUNDS: usize = 2;
 
+/// Rounds of the search for the end of an edge.
+const WALK_ROUNDS: usize = 5;
+
 /// Reused memory.
 #[derive(Default)]
 pub(crate) struct FeatureScratch {
@@ -62,9 +65,10 @@ struct Candidate {
     /// Its crossings' planes, a range of the scratch planes.
     planes: [usize; 2],
     allowed: Aabb,
-    /// Whether `allowed` is the bold box: then only features in cells that the surface does not seem to
-    /// pass count, as all others are seen by the cells they are in.
+    /// Whether `allowed` is the bold box.
     bold: bool,
+    /// For a bold one: whether an edge passes the safe box.
+    has_edge: bool,
     found: Option<Guess>,
     /// The last answer is final.
     settled: bool,
@@ -110,21 +114,18 @@ impl FeatureScratch {
         let mut finder = Finder { sampler, grid, sites, spacing, batch, scratch: self };
         finder.find_candidates(out.smooth);
         finder.guess_and_add_bold();
-        finder.dbg_all("guess");
         for _ in 0..ROUNDS {
             finder.look_close();
-            finder.dbg_all("look");
         }
         finder.follow_edges();
         for number in 0..finder.scratch.candidates.len() {
             let candidate = finder.scratch.candidates[number];
-            finder.dbg(&candidate, "end");
             let found = candidate.found.filter(|found| found.off <= ON_SURFACE * spacing);
             match found {
                 Some(found) if !candidate.bold => {
                     out.vertices[candidate.site as usize] = finder.vertex(&candidate, found);
                 }
-                Some(found) if std::env::var("VAR").is_ok() || finder.is_unseen(&candidate, found.point) => {
+                Some(found) if candidate.bold && finder.may_be_bold(&candidate, &found) => {
                     out.bold.push(finder.bold(&candidate, found));
                 }
                 None if !candidate.bold => out.smooth.push(candidate.site),
@@ -144,19 +145,6 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    fn dbg_all(&self, what: &str) { for c in &self.scratch.candidates { self.dbg(c, what); } }
-    fn dbg(&self, c: &Candidate, what: &str) {
-        if let Ok(cell) = std::env::var("CELL") {
-            let want: Vec<i32> = cell.split(',').map(|x| x.parse().unwrap()).collect();
-            let site = self.sites[c.site as usize];
-            if (0..3).all(|a| self.grid.brick.origin[a] + i32::from(site.cell[a]) == want[a]) {
-                eprintln!("{what} {c:?} config {:08b} h {} allowed {} {}", site.config, self.spacing, c.allowed.min/self.spacing, c.allowed.max/self.spacing);
-                if let Some(f) = c.found { eprintln!("   at {} off {}", f.point/self.spacing, f.off/self.spacing); }
-                for p in &self.scratch.planes[c.planes[0]..c.planes[1]] { eprintln!("    {} {}", p.point/self.spacing, p.normal); }
-            }
-        }
-    }
-
     /// Sorts the sites into candidates and smooth ones, first by linear, then by exact crossings.
     fn find_candidates(&mut self, smooth: &mut Vec<u32>) {
         let Self { sampler, grid, sites, spacing, batch, scratch } = self;
@@ -173,6 +161,7 @@ impl Finder<'_> {
                     planes: [0; 2],
                     allowed: grid.feature_box(site.cell, site.config),
                     bold: false,
+                    has_edge: false,
                     found: None,
                     settled: false,
                 });
@@ -204,7 +193,8 @@ impl Finder<'_> {
             let good = candidate.found.filter(|f| f.off <= NEAR_SURFACE * self.spacing);
             if good.is_none_or(|good| good.is_part) {
                 let allowed = self.grid.bold_box(self.sites[candidate.site as usize].cell);
-                let bold = Candidate { allowed, bold: true, found: None, ..candidate };
+                let has_edge = good.is_some();
+                let bold = Candidate { allowed, bold: true, has_edge, found: None, ..candidate };
                 self.scratch.candidates.push(bold);
             }
         }
@@ -233,7 +223,7 @@ impl Finder<'_> {
                 }
             }
             if candidate.bold {
-                new.retain_mut(|guess| self.move_out_of_sight(&candidate, guess));
+                new.retain(|guess| self.may_be_bold(&candidate, guess));
             }
             self.scratch.guesses.extend(new);
         }
@@ -247,32 +237,10 @@ impl Finder<'_> {
         }
     }
 
-    /// Moves an edge's guess along itself to the nearest place where [`Self::is_unseen`] holds. Returns
-    /// whether there is one.
-    fn move_out_of_sight(&mut self, candidate: &Candidate, guess: &mut Guess) -> bool {
-        if self.is_unseen(candidate, guess.point) {
-            return true;
-        }
-        if guess.rank == 3 {
-            return false;
-        }
-        let own = self.grid.own_box(self.sites[candidate.site as usize].cell);
-        let mut places: Vec<f32> = (0..27)
-            .filter_map(|n| {
-                let offset = Vec3::new((n % 3) as f32, (n / 3 % 3) as f32, (n / 9) as f32) - 1.0;
-                let shift = offset * self.spacing;
-                let cell = Aabb { min: own.min + shift, max: own.max + shift };
-                let [low, high] = clip(guess.point, guess.free, &cell)?;
-                Some(0.0_f32.clamp(low, high))
-            })
-            .collect();
-        places.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
-        let unseen = places
-            .into_iter()
-            .map(|t| candidate.clamp(guess.point + guess.free * t))
-            .find(|&point| self.is_unseen(candidate, point));
-        guess.point = unseen.unwrap_or(guess.point);
-        unseen.is_some() || std::env::var("VAR").is_ok()
+    /// Whether a feature outside a candidate's safe box is its to mark: a corner only if no other cell sees
+    /// it, an edge unless one passes the safe box.
+    fn may_be_bold(&mut self, candidate: &Candidate, guess: &Guess) -> bool {
+        if guess.rank == 3 { self.is_unseen(candidate, guess.point) } else { !candidate.has_edge }
     }
 
     /// Whether `point` lies in a cell whose corners are all on one side of the surface.
@@ -304,9 +272,11 @@ impl Finder<'_> {
     fn bold(&self, candidate: &Candidate, found: Guess) -> Bold {
         let cell = self.sites[candidate.site as usize].cell;
         let own = self.grid.own_box(cell);
+        let near = if found.rank == 2 { found.nearest_to(&own, &candidate.allowed) } else { found.point };
         Bold {
             number: candidate.site as u16,
             vertex: self.vertex(candidate, found),
+            places: [found.point, near, found.point.midpoint(near)],
             leap: found.point.distance(found.point.clamp(own.min, own.max)),
             index: std::array::from_fn(|a| self.grid.brick.origin[a] + i32::from(cell[a])),
         }
@@ -355,7 +325,7 @@ impl Finder<'_> {
                 continue;
             }
             match meet(near).and_then(|m| Guess::new(number, m, &candidate.allowed, turn)) {
-                Some(guess) if guess.rank >= 2 => guesses.push(guess),
+                Some(guess) => guesses.push(guess),
                 _ => candidate.settled = true,
             }
         }
@@ -370,45 +340,74 @@ impl Finder<'_> {
         }
     }
 
-    /// Looks for corners at the ends of edges, within the boxes their vertices may move in.
+    /// Looks for corners with faces that no crossing lies on: along edges, as far as their vertices may go.
     fn follow_edges(&mut self) {
         let on_surface = ON_SURFACE * self.spacing;
-        let mut ends = Vec::new();
-        self.batch.points.clear();
+        let mut walks = Vec::new();
         for (number, candidate) in self.scratch.candidates.iter().enumerate() {
-            let edge = candidate.found.filter(|f| f.rank == 2 && f.off <= on_surface);
-            let Some((found, reach)) =
-                edge.and_then(|f| Some((f, clip(f.point, f.free, &candidate.allowed)?)))
-            else {
-                continue;
-            };
-            for t in reach {
-                ends.push((number, found));
-                self.batch.points.push(candidate.clamp(found.point + found.free * t));
+            let edge = candidate.found.filter(|f| !candidate.bold && f.rank == 2 && f.off <= on_surface);
+            let reach = edge.and_then(|found| Some((found, clip(found.point, found.free, &candidate.allowed)?)));
+            if let Some((found, ends)) = reach {
+                walks.extend(ends.map(|t| Walk { candidate: number, found, on_edge: 0.0, beyond: t, t, corner: None }));
             }
         }
-        self.batch.sample(self.sampler);
-        self.scratch.guesses.clear();
-        for ((number, found), (&point, sample)) in
-            ends.into_iter().zip(self.batch.points.iter().zip(&self.batch.samples))
-        {
-            let candidate = &self.scratch.candidates[number];
-            let seen = &self.scratch.planes[candidate.planes[0]..candidate.planes[1]];
-            let Some(step) = newton_step(sample).filter(|s| s.length() > 2.0 * on_surface) else { continue };
-            let face = Plane { point: point + step, normal: outward(sample) };
-            let slope = face.normal.dot(found.free);
-            if seen.iter().any(|p| p.normal.dot(face.normal) > 0.9) || slope.abs() < 0.1 {
-                continue;
+        for _ in 0..WALK_ROUNDS {
+            self.batch.points.clear();
+            self.batch.points.extend(walks.iter().map(|w| {
+                self.scratch.candidates[w.candidate].clamp(w.found.point + w.found.free * w.t)
+            }));
+            let samples = self.batch.sample(self.sampler);
+            for (walk, sample) in walks.iter_mut().zip(samples) {
+                let Candidate { planes: [first, end], .. } = self.scratch.candidates[walk.candidate];
+                walk.take(sample, &self.scratch.planes[first..end], on_surface);
             }
-            let t = (face.point - found.point).dot(face.normal) / slope;
-            let corner = found.point + found.free * t;
-            if candidate.allowed.contains(corner) {
-                self.scratch.guesses.push(Guess { candidate: number, point: corner, rank: 3, ..found });
+            // Whoever is on a known face at the far end already has nothing to find.
+            walks.retain(|walk| walk.corner.is_some());
+        }
+        self.scratch.guesses.clear();
+        for walk in walks {
+            let point = walk.corner.map(|t| walk.found.point + walk.found.free * t);
+            if let Some(point) = point.filter(|&p| self.scratch.candidates[walk.candidate].allowed.contains(p)) {
+                self.scratch.guesses.push(Guess { candidate: walk.candidate, point, rank: 3, ..walk.found });
             }
         }
         self.measure_guesses();
         for guess in self.scratch.guesses.iter().filter(|g| g.off <= on_surface) {
             self.scratch.candidates[guess.candidate].found = Some(*guess);
+        }
+    }
+}
+
+/// A search along an edge for the face that ends it.
+struct Walk {
+    candidate: usize,
+    found: Guess,
+    /// How far the edge is known to go, and where the face at its end is known to be what counts.
+    on_edge: f32,
+    beyond: f32,
+    /// Where to look next.
+    t: f32,
+    /// Where that face seems to meet the edge.
+    corner: Option<f32>,
+}
+
+impl Walk {
+    fn take(&mut self, sample: &Sample, known: &[Plane], on_surface: f32) {
+        let normal = outward(sample);
+        let off = newton_step(sample).map_or(0.0, Vec3::length);
+        let slope = sample.gradient.dot(self.found.free);
+        let is_new = known.iter().all(|p| p.normal.dot(normal) < 0.9) && normal.dot(self.found.free).abs() > 0.1;
+        if is_new && (off > on_surface || self.corner.is_some()) {
+            self.beyond = self.t;
+            let corner = self.t + (ISO - sample.value) / slope;
+            self.corner = Some(corner);
+            self.t = corner;
+        } else {
+            self.on_edge = self.t;
+        }
+        let between = (self.on_edge.min(self.beyond)..self.on_edge.max(self.beyond)).contains(&self.t);
+        if !between || self.t == self.on_edge {
+            self.t = self.on_edge.midpoint(self.beyond);
         }
     }
 }
@@ -434,6 +433,21 @@ impl Guess {
             point = (point + free * 0.0_f32.clamp(low, high)).clamp(allowed.min, allowed.max);
         }
         Some(Self { candidate, point, rank, free, turn, off: f32::INFINITY, is_part: false })
+    }
+}
+
+impl Guess {
+    /// The point of an edge that is nearest to `target`.
+    fn nearest_to(&self, target: &Aabb, allowed: &Aabb) -> Vec3 {
+        let Some([mut low, mut high]) = clip(self.point, self.free, allowed) else { return self.point };
+        let at = |t: f32| self.point + self.free * t;
+        let distance = |t: f32| at(t).distance_squared(at(t).clamp(target.min, target.max));
+        // The distance to a box is convex along a line.
+        for _ in 0..24 {
+            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+            if distance(a) <= distance(b) { high = b } else { low = a }
+        }
+        at(low.midpoint(high)).clamp(allowed.min, allowed.max)
     }
 }
 

@@ -55,6 +55,8 @@ pub(crate) struct Grid {
     pub values: Box<[f32; BRICK_SAMPLES]>,
     /// Bit x of word `z · 16 + y` is set where sample `[x, y, z]` is inside.
     rows: [u16; BRICK * BRICK],
+    /// Coordinates of the samples along each axis, mm.
+    coordinates: [[f32; BRICK]; 3],
 }
 
 impl Grid {
@@ -63,6 +65,18 @@ impl Grid {
             brick: Brick { origin: [0; 3], spacing: 1.0 },
             values: Box::new([0.0; BRICK_SAMPLES]),
             rows: [0; BRICK * BRICK],
+            coordinates: [[0.0; BRICK]; 3],
+        }
+    }
+
+    /// Turns to another brick; values and signs are still those of the last one.
+    pub fn move_to(&mut self, brick: Brick) {
+        self.brick = brick;
+        for i in 0..BRICK {
+            let point = brick.point([i; 3]);
+            for axis in 0..3 {
+                self.coordinates[axis][i] = point[axis];
+            }
         }
     }
 
@@ -98,7 +112,7 @@ impl Grid {
 
     /// The position of a sample or cell corner.
     pub fn point(&self, at: [usize; 3]) -> Vec3 {
-        self.brick.point(at)
+        Vec3::new(self.coordinates[0][at[0]], self.coordinates[1][at[1]], self.coordinates[2][at[2]])
     }
 
     /// The value at a sample.

@@ -74,8 +74,8 @@ fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [DVec3; 3]) {
                 continue;
             }
             let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-            let tangent = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let cos = tangent.hypot(1.0).recip();
+            let tangent = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let cos = (tangent * tangent + 1.0).sqrt().recip();
             let sin = tangent * cos;
             let r = 3 - p - q;
             let (app, aqq, apq, arp, arq) = (a[p][p], a[q][q], a[p][q], a[r][p], a[r][q]);

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::brick_surface::BrickSurface;
+use crate::brick_surface::MixedCell;
 use crate::lattice::CELLS;
 use crate::patches::{PATCHES, edge_start};
 use crate::place::{Vertex, VertexKind};
@@ -34,30 +34,36 @@ impl VertexRef {
     }
 }
 
-/// The vertices around `edge` of `cell`, counter-clockwise seen from outside.
+/// Steps along the axes in [`Around`].
+const STRIDES: [usize; 3] = [1, 3, 9];
+
+/// The vertices around `edge` of `cell`, counter-clockwise seen from outside. `mixed_at` finds the mixed cell
+/// at a place of a brick of [`Around`].
 ///
 /// `None` if a brick is missing that its bounds wrongly proved empty.
+#[inline]
 pub(crate) fn ring_around(
-    around: &Around<&BrickSurface>,
+    mut mixed_at: impl FnMut(usize, [usize; 3]) -> Option<MixedCell>,
     cell: [usize; 3],
     config: u8,
     edge: usize,
 ) -> Option<[VertexRef; 4]> {
+    let patches = &*PATCHES;
     let (axis, start) = (edge / 4, edge_start(edge));
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut ring = [VertexRef(0); 4];
     for (vertex, (back_u, back_v)) in ring.iter_mut().zip([(1, 1), (0, 1), (0, 0), (1, 0)]) {
         let mut at = cell;
         let mut brick = OWN;
-        for (a, back, stride) in [(u, back_u, 3_usize.pow(u as u32)), (v, back_v, 3_usize.pow(v as u32))] {
+        for (a, back) in [(u, back_u), (v, back_v)] {
             match cell[a] + (start >> a & 1) {
-                0 if back == 1 => (at[a], brick) = (CELLS - 1, brick - stride),
-                CELLS if back == 0 => (at[a], brick) = (0, brick + stride),
+                0 if back == 1 => (at[a], brick) = (CELLS - 1, brick - STRIDES[a]),
+                CELLS if back == 0 => (at[a], brick) = (0, brick + STRIDES[a]),
                 index => at[a] = index - back,
             }
         }
-        let mixed = around[brick]?.cell(at)?;
-        let patch = PATCHES[usize::from(mixed.key)].of_edge[4 * axis + back_u + 2 * back_v];
+        let mixed = mixed_at(brick, at)?;
+        let patch = patches[usize::from(mixed.key)].of_edge[4 * axis + back_u + 2 * back_v];
         *vertex = VertexRef::new(brick, mixed.first_vertex + u16::from(patch));
     }
     if config >> start & 1 == 0 {

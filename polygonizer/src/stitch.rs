@@ -3,7 +3,8 @@
 
 use glam::Vec3;
 
-use crate::brick_surface::{BrickSurface, Bold};
+use crate::brick_surface::{Bold, BrickSurface, MixedCell};
+use crate::lattice::CELLS;
 use crate::patches::edge_start;
 use crate::place::Vertex;
 use crate::ring::{Around, OWN, VertexRef, can_be_cut, least_areas, prefers_second, ring_around};
@@ -17,40 +18,49 @@ pub(crate) fn settle(around: &Around<&BrickSurface>, spacing: f32) -> Vec<Vertex
     let Some(own) = around[OWN] else { return Vec::new() };
     let mut vertices = own.vertices.to_vec();
     for bold in &own.bold {
-        let fits = own
-            .edges_of(bold)
-            .all(|(cell, config, edge)| bold_fits(around, bold, (cell, config, edge), spacing));
-        if fits {
-            vertices[usize::from(bold.number)] = bold.vertex;
+        let fits = |place: &&Vec3| {
+            own.edges_of(bold).all(|around_edge| bold_fits(around, bold, **place, around_edge, spacing))
+        };
+        if let Some(&position) = bold.places.iter().find(fits) {
+            vertices[usize::from(bold.number)] = Vertex { position, ..bold.vertex };
         }
     }
     vertices
 }
 
-/// Whether the ring around an edge can be cut with `bold` in its bold place.
+/// Whether the ring around an edge can be cut with `bold` at `place`.
 fn bold_fits(
     around: &Around<&BrickSurface>,
     bold: &Bold,
+    place: Vec3,
     (cell, config, edge): ([usize; 3], u8, usize),
     spacing: f32,
 ) -> bool {
-    let Some(ring) = ring_around(around, cell, config, edge) else { return false };
-    let places: [[Option<Vec3>; 2]; 4] = ring.map(|r| {
-        let Some(brick) = around[r.brick()] else { return [None; 2] };
-        if r == VertexRef::new(OWN, bold.number) {
-            return [Some(bold.vertex.position), None];
+    let Some(ring) = ring_around(|brick, at| around[brick]?.cell(at), cell, config, edge) else {
+        return false;
+    };
+    let mut places = [const { Vec::new() }; 4];
+    for (places, vertex) in places.iter_mut().zip(ring) {
+        let Some(brick) = around[vertex.brick()] else { return false };
+        if vertex == VertexRef::new(OWN, bold.number) {
+            places.push(place);
+            continue;
         }
-        let other = brick.bold.iter().find(|b| usize::from(b.number) == r.number() && b.rank() < bold.rank());
-        [Some(brick.vertices[r.number()].position), other.map(|b| b.vertex.position)]
-    });
+        places.push(brick.vertices[vertex.number()].position);
+        if let Ok(other) = brick.bold.binary_search_by_key(&vertex.number(), |b| usize::from(b.number))
+            && brick.bold[other].rank() < bold.rank()
+        {
+            places.extend(brick.bold[other].places);
+        }
+    }
     let start_inside = config >> edge_start(edge) & 1 == 1;
-    (0..16).all(|choice: usize| {
-        let mut positions = [Vec3::ZERO; 4];
-        for (i, place) in places.iter().enumerate() {
-            // A choice that a vertex does not have repeats another.
-            let Some(position) = place[choice >> i & 1].or(place[0]) else { return false };
-            positions[i] = position;
-        }
+    let choices = places.each_ref().map(Vec::len);
+    (0..choices.iter().product()).all(|mut choice: usize| {
+        let positions = std::array::from_fn(|i| {
+            let place = places[i][choice % choices[i]];
+            choice /= choices[i];
+            place
+        });
         can_be_cut(least_areas(positions, edge / 4, start_inside, spacing))
     })
 }
@@ -64,13 +74,20 @@ pub(crate) fn stitch(
 ) -> Vec<[VertexRef; 3]> {
     let Some(own) = around[OWN] else { return Vec::new() };
     let mut triangles = Vec::with_capacity(2 * own.vertices.len());
+    // Rings reach backwards only, so within the brick they find all they need here.
+    let mut seen = [MixedCell { first_vertex: 0, key: 0 }; CELLS * CELLS * CELLS];
+    let place = |[x, y, z]: [usize; 3]| (z * CELLS + y) * CELLS + x;
     for (cell, mixed) in own.cells() {
         let config = mixed.key as u8;
+        seen[place(cell)] = mixed;
         for axis in 0..3 {
             if (config >> (1 << axis) ^ config) & 1 == 0 {
                 continue;
             }
-            let ring = ring_around(around, cell, config, 4 * axis);
+            let mixed_at = |brick: usize, at| {
+                if brick == OWN { Some(seen[place(at)]) } else { around[brick]?.cell(at) }
+            };
+            let ring = ring_around(mixed_at, cell, config, 4 * axis);
             let found = ring.and_then(|ring| Some((ring, vertices_of(ring, vertices)?)));
             let Some((ring, corners)) = found else { continue };
             let areas = least_areas(corners.map(|v| v.position), axis, config & 1 == 1, spacing);

@@ -39,6 +39,19 @@ fn dbg() {
             }
         }
     }
+    for p in turned.corners() {
+        let d = mesh.positions.iter().map(|v| v.distance(p)).fold(9e9, f32::min) / h;
+        if d > 0.05 {
+              println!("CORNER {} off {d} cell {:?}", p / h, (p/h).floor());
+                let mut near: Vec<usize> = (0..mesh.positions.len()).filter(|&i| mesh.positions[i].distance(p) < 1.3*h).collect();
+                near.sort_by(|&x,&y| mesh.positions[x].distance(p).total_cmp(&mesh.positions[y].distance(p)));
+                for i in near { let v = mesh.positions[i]; println!("   v{i} {:?} at {} dist {} sd {}", kinds[i], v/h, v.distance(p)/h, (solid.distance)(v).0/h); }
+                for sx in -1..3 { for sy in -1..3 { for sz in -1..3 {
+                    let c = ((p/h).floor() + Vec3::new(sx as f32, sy as f32, sz as f32)) * h;
+                    print!("{}", if (solid.distance)(c).0 <= 0.0 {'#'} else {'.'});
+                } print!(" "); } println!(); } println!();
+        }
+    }
     println!("bad {bad} of {n}");
     let c = |k| kinds.iter().filter(|&&x| x == k).count();
     println!("{} {} {}", c(VertexKind::Smooth), c(VertexKind::Edge), c(VertexKind::Corner));

@@ -6,6 +6,7 @@ use crate::job::Job;
 use crate::meshing::{self, Meshed};
 use crate::output::{Report, check_writable, counted, number, vector};
 use crate::{input, output};
+use mesh::simplify;
 use serde_json::json;
 use std::path::Path;
 
@@ -17,7 +18,12 @@ pub fn run(args: &MeshArgs, job: &mut Job) -> Result<Report, Failure> {
     meshing::format_of_output(&args.output)?;
     check_writable(&args.output)?;
     let scene = input::open_scene(&args.scene, job)?;
-    let meshed = meshing::mesh_scene(&args.scene, &scene, &args.resolution, job)?;
+    let mut meshed = meshing::mesh_scene(&args.scene, &scene, &args.resolution, job)?;
+    if let Some(tolerance) = args.simplify {
+        meshed.mesh = job.stage("simplify", |watch| {
+            simplify(&meshed.mesh, tolerance, &|| watch.cancel.is_cancelled()).ok_or(Failure::Interrupted)
+        })?;
+    }
     let attachments = input::attachments(&args.scene, &scene)?;
     meshing::write_mesh(&args.scene, &args.output, &meshed.mesh, &attachments, job)?;
     tell(&mut report, &args.output, &meshed);

@@ -7,7 +7,15 @@ use crate::scene::{Scene, measure};
 /// The scene after the command. Errors: as [`super::Document::apply`].
 pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandError> {
     let root = &scene.root;
-    let grows = !matches!(command, Command::Remove { .. } | Command::Unwrap { .. });
+    let may_be_illegal = matches!(
+        command,
+        Command::Insert { .. }
+            | Command::Replace { .. }
+            | Command::Move { .. }
+            | Command::WrapInOperator { .. }
+            | Command::WrapInWarp { .. }
+            | Command::SetShape { .. }
+    );
     let new_root = match command {
         Command::Insert { parent, index, node } => insert(root, &parent, index, node)?,
         Command::Remove { path } => take(root, &path)?.0,
@@ -23,10 +31,12 @@ pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandErr
             [child] => Ok(child.clone()),
             children => Err(CommandError::NotAWrapper { path: path.clone(), len: children.len() }),
         })?,
-        Command::SetShape { path, shape } => {
-            edit(root, &path, |node| change(node, Node { shape: reshaped(node, shape, &path)?, ..(**node).clone() }))?
+        Command::SetShape { path, shape } => edit(root, &path, |node| {
+            change(node, Node { shape: reshaped(node, shape, &path)?, ..(**node).clone() })
+        })?,
+        Command::SetName { path, name } => {
+            edit(root, &path, |node| change(node, Node { name, ..(**node).clone() }))?
         }
-        Command::SetName { path, name } => edit(root, &path, |node| change(node, Node { name, ..(**node).clone() }))?,
         Command::SetColor { path, color } => {
             edit(root, &path, |node| change(node, Node { color, ..(**node).clone() }))?
         }
@@ -38,7 +48,7 @@ pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandErr
         }
         Command::SetTitle { title } => return Ok(Scene { title, ..scene.clone() }),
     };
-    if grows && !NodeRef::ptr_eq(&new_root, root) {
+    if may_be_illegal && !NodeRef::ptr_eq(&new_root, root) {
         measure(&new_root).map_err(CommandError::Illegal)?;
     }
     Ok(Scene { root: new_root, ..scene.clone() })
@@ -65,7 +75,9 @@ fn edit(
         match &mut copy.shape {
             Shape::Operator(_, children) => children[index] = new,
             Shape::Warp(_, child) => *child = new,
-            Shape::Primitive(_) => unreachable!("the way goes through children, which primitives do not have"),
+            Shape::Primitive(_) => {
+                unreachable!("the way goes through children, which primitives do not have")
+            }
         }
         new = copy.into();
     }
@@ -76,9 +88,11 @@ fn edit(
 ///
 /// Comparing the children costs little: they are the same allocations, which are equal at a glance.
 fn change(old: &NodeRef, new: Node) -> Result<NodeRef, CommandError> {
-    let same_children = old.children().iter().map(NodeRef::as_ptr).eq(new.children().iter().map(NodeRef::as_ptr));
+    let same_children =
+        old.children().iter().map(NodeRef::as_ptr).eq(new.children().iter().map(NodeRef::as_ptr));
     let same = same_children
-        && (&old.name, old.color, old.muted, old.construction) == (&new.name, new.color, new.muted, new.construction)
+        && (&old.name, old.color, old.muted, old.construction)
+            == (&new.name, new.color, new.muted, new.construction)
         && NewShape::from(&old.shape) == NewShape::from(&new.shape);
     Ok(if same { old.clone() } else { new.into() })
 }

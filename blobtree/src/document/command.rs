@@ -191,7 +191,9 @@ impl Command {
             Self::Remove { path } => format!("Remove {}", at(path)),
             Self::Replace { path, node } => format!("Replace {} by {}", at(path), called(node)),
             Self::Move { from, .. } => format!("Move {} in the tree", at(from)),
-            Self::WrapInOperator { path, operator } => format!("Put {} into {}", at(path), operator.type_name()),
+            Self::WrapInOperator { path, operator } => {
+                format!("Put {} into {}", at(path), operator.type_name())
+            }
             Self::WrapInWarp { path, warp } => format!("Put {} into {}", at(path), warp.type_name()),
             Self::Unwrap { path } => format!("Unwrap {}", at(path)),
             Self::SetShape { path, shape } => match path.find(root) {

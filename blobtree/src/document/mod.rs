@@ -64,8 +64,8 @@ impl Document {
     ///
     /// - **Promises:** the scene stays one that [`Scene::check`] allows.
     /// - **Errors:** a command that cannot be carried out; then nothing has changed.
-    /// - **Cost:** the nodes on the way to the changed place, with their lists of children; and, where nodes
-    ///   are added or moved, one walk over the different nodes of the tree.
+    /// - **Cost:** the nodes on the way to the changed place, with their lists of children; and, unless only
+    ///   a name, a colour or a sign changes, one walk over the different nodes of the tree.
     pub fn apply(&mut self, command: Command) -> Result<Change, CommandError> {
         let name = command.name(&self.scene().root);
         let before = self.scene().root.clone();

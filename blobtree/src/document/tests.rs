@@ -1,6 +1,8 @@
 //! What the document promises.
 
-use super::{Command, CommandError, DEFAULT_OLDER_VERSIONS, Document, HISTORY_LIMIT, NewShape, write_atomically};
+use super::{
+    Command, CommandError, DEFAULT_OLDER_VERSIONS, Document, HISTORY_LIMIT, NewShape, write_atomically,
+};
 use crate::build::{Build, point, union};
 use crate::node::{Color, Node, NodePath, NodeRef, Shape};
 use crate::operator::Operator;
@@ -45,8 +47,14 @@ fn after(command: Command) -> Result<String, CommandError> {
 fn commands_do_what_they_say() {
     let new = || NodeRef::from(point([0., 0., 0.], 1.).named("new"));
     let cases = [
-        (Command::Insert { parent: path("/1"), index: 3, node: new() }, "union(a group(b c d new) transform(e))"),
-        (Command::Insert { parent: path("/"), index: 0, node: new() }, "union(new a group(b c d) transform(e))"),
+        (
+            Command::Insert { parent: path("/1"), index: 3, node: new() },
+            "union(a group(b c d new) transform(e))",
+        ),
+        (
+            Command::Insert { parent: path("/"), index: 0, node: new() },
+            "union(new a group(b c d) transform(e))",
+        ),
         (Command::Remove { path: path("/1/1") }, "union(a group(b d) transform(e))"),
         (Command::Replace { path: path("/2/0"), node: new() }, "union(a group(b c d) transform(new))"),
         (Command::Replace { path: path("/"), node: new() }, "new"),
@@ -63,7 +71,10 @@ fn commands_do_what_they_say() {
             Command::SetShape { path: path("/"), shape: NewShape::Operator(Operator::Sum) },
             "sum(a group(b c d) transform(e))",
         ),
-        (Command::SetName { path: path("/1/2"), name: Some("x".into()) }, "union(a group(b c x) transform(e))"),
+        (
+            Command::SetName { path: path("/1/2"), name: Some("x".into()) },
+            "union(a group(b c x) transform(e))",
+        ),
     ];
     for (command, expected) in cases {
         assert_eq!(after(command.clone()).as_deref(), Ok(expected), "{command:?}");
@@ -118,17 +129,20 @@ fn illegal_commands_are_told_and_change_nothing() {
             Command::Insert { parent: path("/1"), index: 0, node: bad },
             "not possible: node /1/0: `radius` is -1.0, not 0.001 to 100000 mm",
         ),
-        (
-            Command::Insert { parent: path("/1"), index: 0, node: deep },
-            "not possible: node /1/0/0/0",
-        ),
+        (Command::Insert { parent: path("/1"), index: 0, node: deep }, "not possible: node /1/0/0/0"),
         (
             Command::Move { from: path("/1"), parent: path("/1"), index: 0 },
             "/1 cannot be moved to /1, which is part of it",
         ),
         (Command::Move { from: path("/"), parent: path("/1"), index: 0 }, "/ cannot be moved to /1"),
-        (Command::Move { from: path("/0"), parent: path("/1"), index: 4 }, "place 4 is beyond the 3 children"),
-        (Command::Move { from: path("/2/0"), parent: path("/1"), index: 0 }, "/2/0 is the root or the child of a warp"),
+        (
+            Command::Move { from: path("/0"), parent: path("/1"), index: 4 },
+            "place 4 is beyond the 3 children",
+        ),
+        (
+            Command::Move { from: path("/2/0"), parent: path("/1"), index: 0 },
+            "/2/0 is the root or the child of a warp",
+        ),
         (Command::Move { from: path("/0"), parent: path("/2"), index: 0 }, "the transform at /1 cannot have"),
         (Command::Unwrap { path: path("/1") }, "the node at /1 has 3 children, so it cannot be unwrapped"),
         (
@@ -314,7 +328,10 @@ fn a_save_that_fails_leaves_all_as_it_was() {
     let target = folder.path().join("taken");
     fs::create_dir(&target).expect("writable");
     let error = write_atomically(&target, b"new", 3).expect_err("it is a folder").to_string();
-    assert!(error.ends_with("taken` is not a file, so it cannot be written over; choose another name"), "{error}");
+    assert!(
+        error.ends_with("taken` is not a file, so it cannot be written over; choose another name"),
+        "{error}"
+    );
     let error = write_atomically(&folder.path().join("none/scene.trullo"), b"new", 3).expect_err("no folder");
     assert!(error.to_string().contains("creating a file in its folder"), "{error}");
     let error = write_atomically(&folder.path().join("x".repeat(300)), b"new", 3).expect_err("a long name");
@@ -339,7 +356,8 @@ fn a_folder_that_cannot_be_written_is_told_unless_the_user_may_do_anything() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("scene.trullo");
     write_atomically(&file, b"old", 3).expect("writable");
-    let allow = |mode| fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).expect("our folder");
+    let allow =
+        |mode| fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).expect("our folder");
     allow(0o555);
     let result = write_atomically(&file, b"new", 3);
     allow(0o755);

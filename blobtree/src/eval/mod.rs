@@ -4,6 +4,7 @@
 //! regions (`specialise`), runs it for values over bricks or clouds of points (`values`), for values with
 //! gradients (`slopes`), and one point at a time with any kind of number (`point`).
 
+mod loops;
 mod places;
 mod point;
 mod program;
@@ -13,4 +14,5 @@ mod slopes;
 mod specialise;
 mod values;
 
-pub use program::Tree;
+pub use program::{Tree, support};
+pub(crate) use program::{warp_map, warped_region};

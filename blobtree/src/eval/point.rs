@@ -21,6 +21,10 @@ impl TreeSampler<'_> {
                 let inner = self.run_point(self.narrower.arena[first], warped.place);
                 Slope::new(inner.value, warped.pull_back(inner.gradient))
             }
+            Op::Cache(i) => match self.readers[i as usize].read(&self.tree.caches[i as usize], p) {
+                Some(slope) => slope,
+                None => self.run_point(self.narrower.arena[first], p),
+            },
             Op::Sum => self.fold_point(instr, p, combine::add),
             Op::Union => self.fold_point(instr, p, combine::union),
             Op::Intersection => self.fold_point(instr, p, combine::intersection),
@@ -57,9 +61,8 @@ impl TreeSampler<'_> {
             return Slope::constant(0.0);
         };
         let first = ricci.term(self.run_point(self.narrower.arena[first], p));
-        let join = operands.fold(first, |join, at| {
-            ricci.join(join, ricci.term(self.run_point(self.narrower.arena[at], p)))
-        });
+        let join = operands
+            .fold(first, |join, at| ricci.join(join, ricci.term(self.run_point(self.narrower.arena[at], p))));
         ricci.root(join)
     }
 

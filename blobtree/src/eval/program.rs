@@ -1,15 +1,20 @@
 //! Trees compiled to flat programs.
 
+use crate::cache::{CacheSite, NodeCache};
 use crate::field::{Aabb, Field, Sampler};
-use crate::leaf::{self, Leaf, even_scale};
+use crate::leaf::{self, Frame, Leaf, even_scale};
 use crate::node::{Node, Shape};
 use crate::operator::Operator;
 use crate::warp::Warp;
 use crate::warp_map::{AffineWarp, BendMap, TaperMap, TwistMap, WarpMap};
 use glam::{DAffine3, Mat3};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::sampler::TreeSampler;
+
+/// Looks for a node's cache.
+type FindCache<'a> = &'a dyn Fn(&Node) -> Option<Arc<NodeCache>>;
 
 /// One operation; its operands follow each other in an arena of the same type.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +45,8 @@ pub(crate) enum Op {
     GradientBlend(u32),
     /// The warp of this number.
     Warp(u32),
+    /// The cache of this number, before its exact operand.
+    Cache(u32),
 }
 
 impl Instr {
@@ -62,6 +69,7 @@ pub struct Tree {
     /// From gradients in the space of evaluation to those in a gradient blend's own; `None` if it is at most
     /// turned and scaled evenly, which angles do not notice.
     pub(crate) frames: Vec<Option<Mat3>>,
+    pub(crate) caches: Vec<CacheSite>,
     pub(crate) arena: Vec<Instr>,
     pub(crate) root: Instr,
     support: Aabb,
@@ -72,16 +80,22 @@ pub struct Tree {
 impl Tree {
     /// Compiles the tree below and including `node`, which must have passed the checks of its parameters.
     pub fn new(node: &Node) -> Self {
+        Self::compiled(node, &|_| None)
+    }
+
+    /// Compiles the tree with the caches that `find` knows for its nodes.
+    pub(crate) fn compiled(node: &Node, find: FindCache) -> Self {
         let mut tree = Self {
             leaves: Vec::new(),
             warps: Vec::new(),
             frames: Vec::new(),
+            caches: Vec::new(),
             arena: Vec::new(),
             root: Instr::EMPTY,
             support: support(node),
             evaluations: AtomicU64::new(0),
         };
-        tree.root = tree.compile(node, &DAffine3::IDENTITY);
+        tree.root = tree.compile(node, &DAffine3::IDENTITY, find);
         tree
     }
 
@@ -96,37 +110,56 @@ impl Tree {
     }
 
     /// Compiles a node whose space is reached by `node_from_world` from that of evaluation.
-    fn compile(&mut self, node: &Node, node_from_world: &DAffine3) -> Instr {
+    fn compile(&mut self, node: &Node, node_from_world: &DAffine3, find: FindCache) -> Instr {
         if !node.is_heard() {
             return Instr::EMPTY;
         }
+        let exact = self.compile_shape(node, node_from_world, find);
+        match find(node) {
+            Some(cache) if exact.op != Op::Empty => {
+                let site = CacheSite { cache, frame: Frame::new(*node_from_world) };
+                self.caches.push(site);
+                self.push(Op::Cache(self.caches.len() as u32 - 1), [exact])
+            }
+            _ => exact,
+        }
+    }
+
+    fn compile_shape(&mut self, node: &Node, node_from_world: &DAffine3, find: FindCache) -> Instr {
         match &node.shape {
             Shape::Primitive(primitive) => {
                 self.leaves.push(Leaf::new(primitive, node_from_world));
                 Instr { op: Op::Leaf(self.leaves.len() as u32 - 1), first: 0, count: 0 }
             }
-            Shape::Warp(warp, child) => self.compile_warp(warp, child, node_from_world),
+            Shape::Warp(warp, child) => self.compile_warp(warp, child, node_from_world, find),
             Shape::Operator(operator, children) => {
                 let heard = children.iter().filter(|child| child.is_heard());
-                let operands: Vec<Instr> = heard.map(|child| self.compile(child, node_from_world)).collect();
+                let operands: Vec<Instr> =
+                    heard.map(|child| self.compile(child, node_from_world, find)).collect();
                 let minuend_muted = children.first().is_none_or(|first| !first.is_heard());
                 self.compile_operator(*operator, operands, minuend_muted, node_from_world)
             }
         }
     }
 
-    fn compile_warp(&mut self, warp: &Warp, child: &Node, node_from_world: &DAffine3) -> Instr {
+    fn compile_warp(
+        &mut self,
+        warp: &Warp,
+        child: &Node,
+        node_from_world: &DAffine3,
+        find: FindCache,
+    ) -> Instr {
         if let Some(parent_from_child) = warp.parent_from_child() {
             let rows = DAffine3 {
                 matrix3: parent_from_child.matrix3.as_dmat3(),
                 translation: parent_from_child.translation.as_dvec3(),
             };
-            return self.compile(child, &(rows.inverse() * *node_from_world));
+            return self.compile(child, &(rows.inverse() * *node_from_world), find);
         }
         let map = warp_map(warp);
         // What lies between this space and that of evaluation happens before the warp.
         let between = *node_from_world != DAffine3::IDENTITY;
-        let inner = self.compile(child, &DAffine3::IDENTITY);
+        let inner = self.compile(child, &DAffine3::IDENTITY, find);
         if inner.op == Op::Empty {
             return Instr::EMPTY;
         }

@@ -5,6 +5,7 @@ use super::program::{Instr, Tree};
 use super::scratch::Scratch;
 use super::slopes::Want;
 use super::specialise::{Narrowed, Narrower};
+use crate::cache::CacheReader;
 use crate::field::{Aabb, BRICK_SAMPLES, Brick, Interval, Sample, Sampler};
 use glam::Vec3;
 use std::sync::atomic::Ordering;
@@ -23,6 +24,8 @@ pub(crate) struct TreeSampler<'a> {
     pub tables: Vec<[[f32; ROW]; 3]>,
     /// Those primitives.
     pub points: Vec<Instr>,
+    /// A way into each of the tree's caches.
+    pub readers: Vec<CacheReader>,
     pub arch: pulp::Arch,
     /// Evaluations of a primitive at a point so far.
     pub evaluations: u64,
@@ -45,6 +48,7 @@ impl<'a> TreeSampler<'a> {
             scratch: Scratch::default(),
             tables: Vec::new(),
             points: Vec::new(),
+            readers: tree.caches.iter().map(|_| CacheReader::default()).collect(),
             arch: pulp::Arch::new(),
             evaluations: 0,
         }

@@ -1,11 +1,12 @@
 //! Programs run for values with gradients, over clouds or bricks.
 
+use super::loops::{EachSlope, KernelSlopes, ZipSlopes};
 use super::places::{Places, ROW, Row};
 use super::program::{Instr, Op};
 use super::sampler::TreeSampler;
 use super::scratch::Slopes;
 use crate::combine::{self, Ricci};
-use crate::leaf::{Kernel, with_kernel};
+use crate::leaf::with_kernel;
 use crate::scalar::{Jet, Slope};
 
 /// What goes with the value.
@@ -29,14 +30,15 @@ impl TreeSampler<'_> {
     ) {
         let first = instr.first as usize;
         match instr.op {
-            Op::Empty => each(out, |_| Slope::constant(0.0)),
+            Op::Empty => self.each_slope(out, |_| Slope::constant(0.0)),
             Op::Leaf(i) => {
                 self.evaluations += (places.rows() * ROW) as u64;
                 let (arch, tree) = (self.arch, self.tree);
                 let leaf = &tree.leaves[i as usize];
-                with_kernel!(leaf, kernel => arch.dispatch(|| kernel_slopes(kernel, places, out)));
+                with_kernel!(leaf, kernel => arch.dispatch(KernelSlopes { kernel, places, out }));
             }
             Op::Warp(i) => self.warped_slopes(i, first, places, out, want),
+            Op::Cache(i) => self.cached_slopes(i, first, places, out, want),
             Op::Sum => self.fold_slopes(instr, places, out, want, combine::add),
             Op::Union => self.fold_slopes(instr, places, out, want, combine::union),
             Op::Intersection => self.fold_slopes(instr, places, out, want, combine::intersection),
@@ -44,18 +46,18 @@ impl TreeSampler<'_> {
             Op::Blend(s) => self.ricci_slopes(s, instr.operands(), places, out, want),
             Op::BlendIntersection(s) => {
                 self.run_slopes(self.narrower.arena[first], places, out, want);
-                each(out, combine::complement);
+                self.each_slope(out, combine::complement);
                 for at in instr.operands().skip(1) {
                     let join = |u, g| combine::soft_outside(u, combine::complement(g), s);
                     self.joined_slopes(at, places, out, want, join);
                 }
-                each(out, |u| combine::solid_part(combine::complement(u)));
+                self.each_slope(out, |u| combine::solid_part(combine::complement(u)));
             }
             Op::BlendDifference(s) => {
                 self.run_slopes(self.narrower.arena[first], places, out, want);
                 let mut cut = self.scratch.take_slopes(places.rows());
                 self.ricci_slopes(s, first + 1..instr.operands().end, places, &mut cut, want);
-                zip(out, &cut, |f, g| combine::soft_cut(f, g, s));
+                self.arch.dispatch(ZipSlopes { out, operand: &cut, f: |f, g| combine::soft_cut(f, g, s) });
                 self.scratch.give_slopes(cut);
             }
             Op::GradientBlend(_) if want == Want::Gradient => self.jet_slopes(instr, places, out),
@@ -99,6 +101,42 @@ impl TreeSampler<'_> {
         self.scratch.give_cloud(cloud);
     }
 
+    /// Interpolates where the cache is accurate, and evaluates the exact operand at all other places.
+    pub(crate) fn cached_slopes<P: Places>(
+        &mut self,
+        cache: u32,
+        exact: usize,
+        places: &P,
+        out: &mut Slopes,
+        want: Want,
+    ) {
+        let site = &self.tree.caches[cache as usize];
+        let mut missing = Vec::new();
+        for at in 0..places.rows() * ROW {
+            let p = places.row(at / ROW).place(at % ROW);
+            match self.readers[cache as usize].read(site, p) {
+                Some(slope) => out.set(at / ROW, at % ROW, slope),
+                None => missing.push(at),
+            }
+        }
+        if missing.is_empty() {
+            return;
+        }
+        let rows = missing.len().div_ceil(ROW);
+        let mut cloud = self.scratch.take_cloud(rows);
+        for to in 0..rows * ROW {
+            let at = missing[to.min(missing.len() - 1)];
+            cloud.set(to / ROW, to % ROW, places.row(at / ROW).place(at % ROW));
+        }
+        let mut slopes = self.scratch.take_slopes(rows);
+        self.run_slopes(self.narrower.arena[exact], &cloud, &mut slopes, want);
+        for (from, at) in missing.iter().enumerate() {
+            out.set(at / ROW, at % ROW, slopes.get(from / ROW, from % ROW));
+        }
+        self.scratch.give_slopes(slopes);
+        self.scratch.give_cloud(cloud);
+    }
+
     /// A gradient blend's exact gradient, from jets: it depends on how the children's gradients change.
     fn jet_slopes<P: Places>(&mut self, instr: Instr, places: &P, out: &mut Slopes) {
         for r in 0..places.rows() {
@@ -122,15 +160,15 @@ impl TreeSampler<'_> {
     ) {
         let ricci = Ricci(s);
         let Some(first) = operands.next() else {
-            each(out, |_| Slope::constant(0.0));
+            self.each_slope(out, |_| Slope::constant(0.0));
             return;
         };
         self.run_slopes(self.narrower.arena[first], places, out, want);
-        each(out, |f| ricci.term(f));
+        self.each_slope(out, |f| ricci.term(f));
         for at in operands {
             self.joined_slopes(at, places, out, want, |f, g| ricci.join(f, ricci.term(g)));
         }
-        each(out, |f| ricci.root(f));
+        self.each_slope(out, |f| ricci.root(f));
     }
 
     fn fold_slopes<P: Places + Sync>(
@@ -147,6 +185,10 @@ impl TreeSampler<'_> {
         }
     }
 
+    fn each_slope(&self, out: &mut Slopes, f: impl Fn(Slope<f32>) -> Slope<f32>) {
+        self.arch.dispatch(EachSlope { out, f });
+    }
+
     fn joined_slopes<P: Places + Sync>(
         &mut self,
         at: usize,
@@ -157,39 +199,7 @@ impl TreeSampler<'_> {
     ) {
         let mut operand = self.scratch.take_slopes(places.rows());
         self.run_slopes(self.narrower.arena[at], places, &mut operand, want);
-        self.arch.dispatch(|| zip(out, &operand, join));
+        self.arch.dispatch(ZipSlopes { out, operand: &operand, f: join });
         self.scratch.give_slopes(operand);
-    }
-}
-
-#[inline(always)]
-fn kernel_slopes<K: Kernel, P: Places>(kernel: &K, places: &P, out: &mut Slopes) {
-    let [gx, gy, gz] = &mut out.gradient;
-    let rows = out.value.iter_mut().zip(gx).zip(gy).zip(gz);
-    for (r, (((value, gx), gy), gz)) in rows.enumerate() {
-        let row = places.row(r);
-        for i in 0..ROW {
-            let slope = kernel.at(row.place(i));
-            value[i] = slope.value;
-            [gx[i], gy[i], gz[i]] = slope.gradient;
-        }
-    }
-}
-
-#[inline(always)]
-fn each(out: &mut Slopes, f: impl Fn(Slope<f32>) -> Slope<f32>) {
-    for r in 0..out.value.len() {
-        for i in 0..ROW {
-            out.set(r, i, f(out.get(r, i)));
-        }
-    }
-}
-
-#[inline(always)]
-fn zip(out: &mut Slopes, operand: &Slopes, f: impl Fn(Slope<f32>, Slope<f32>) -> Slope<f32>) {
-    for r in 0..out.value.len() {
-        for i in 0..ROW {
-            out.set(r, i, f(out.get(r, i), operand.get(r, i)));
-        }
     }
 }

@@ -3,6 +3,9 @@
 use super::program::{Instr, Op, Tree};
 use crate::field::{Aabb, Interval};
 
+/// By how much a cache may differ from the exact field.
+const CACHE_ERROR: f32 = 0.01;
+
 /// A program narrowed to a region, and what is known of its values there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Narrowed {
@@ -58,6 +61,17 @@ impl Narrower {
                 self.arena.push(inner.instr);
                 let creased = inner.creased || warp.creased(region);
                 Narrowed { instr: Instr { first, ..instr }, bound: inner.bound, creased }
+            }
+            Op::Cache(_) => {
+                let exact = self.narrow(tree, self.arena[instr.first as usize], region);
+                // Where the gradient may jump, interpolation would smooth it.
+                if exact.is_empty() || exact.creased {
+                    return exact;
+                }
+                let first = self.arena.len() as u32;
+                self.arena.push(exact.instr);
+                let bound = exact.bound.widened(CACHE_ERROR);
+                Narrowed { instr: Instr { first, ..instr }, bound, creased: false }
             }
             _ => {
                 let base = self.pending.len();
@@ -125,7 +139,7 @@ impl Narrower {
                 retain_from(operands, base, |o| !o.is_empty());
                 (fold(&operands[base..], Interval::gradient_blend), false)
             }
-            Op::Empty | Op::Leaf(_) | Op::Warp(_) => unreachable!("not an operation on many"),
+            Op::Empty | Op::Leaf(_) | Op::Warp(_) | Op::Cache(_) => unreachable!("not an operation on many"),
         };
         match self.pending[base..] {
             [] => Narrowed::EMPTY,

@@ -1,12 +1,13 @@
 //! Programs run for values, over bricks or clouds.
 
+use super::loops::{Each, KernelValues, SumTables, Zip};
 use super::places::{Axes, Cloud, Places, ROW, Row};
 use super::program::{Instr, Op};
 use super::sampler::TreeSampler;
 use super::slopes::Want;
 use crate::combine::{self, Ricci};
-use crate::falloff::{cube, larger, smaller};
-use crate::leaf::{Kernel, Leaf, with_kernel};
+use crate::falloff::{larger, smaller};
+use crate::leaf::{Leaf, with_kernel};
 use crate::scalar::Slope;
 
 /// What a batch of places needs beyond being places: sums of points are quicker on the lattice.
@@ -22,14 +23,12 @@ impl Batch for Axes {
         tables.clear();
         tables.extend(points.iter().map(|instr| match instr.op {
             Op::Leaf(i) => match &tree.leaves[i as usize] {
-                Leaf::PurePoint(point) => {
-                    std::array::from_fn(|a| self.along[a].map(|x| point.term(a, x)))
-                }
+                Leaf::PurePoint(point) => std::array::from_fn(|a| self.along[a].map(|x| point.term(a, x))),
                 _ => unreachable!("only point primitives are summed by tables"),
             },
             _ => unreachable!("only leaves are summed by tables"),
         }));
-        sampler.arch.dispatch(|| sum_tables(tables, out));
+        sampler.arch.dispatch(SumTables { tables, out });
         true
     }
 }
@@ -37,24 +36,6 @@ impl Batch for Axes {
 impl Batch for Cloud {
     fn sum_points(&self, _: &mut TreeSampler, _: &[Instr], _: &mut [[f32; ROW]]) -> bool {
         false
-    }
-}
-
-/// `Σ (1 − x[i] − y[j] − z[k])₊³`, row by row.
-#[inline(always)]
-fn sum_tables(tables: &[[[f32; ROW]; 3]], out: &mut [[f32; ROW]]) {
-    for (r, row) in out.iter_mut().enumerate() {
-        let (j, k) = (r % ROW, r / ROW);
-        let mut total = [0.0f32; ROW];
-        for [x, y, z] in tables {
-            let rest = 1.0 - y[j] - z[k];
-            if rest > 0.0 {
-                for i in 0..ROW {
-                    total[i] += cube(larger(rest - x[i], 0.0));
-                }
-            }
-        }
-        *row = total;
     }
 }
 
@@ -76,6 +57,12 @@ impl TreeSampler<'_> {
                 self.run_values(self.narrower.arena[instr.first as usize], &cloud, out);
                 self.scratch.give_cloud(cloud);
             }
+            Op::Cache(i) => {
+                let mut slopes = self.scratch.take_slopes(places.rows());
+                self.cached_slopes(i, instr.first as usize, places, &mut slopes, Want::Direction);
+                out.copy_from_slice(&slopes.value);
+                self.scratch.give_slopes(slopes);
+            }
             Op::Sum => self.sum_values(instr, places, out),
             Op::Union => self.fold_values(instr, places, out, |f, g| larger(g, f)),
             Op::Intersection => self.fold_values(instr, places, out, |f, g| smaller(g, f)),
@@ -87,21 +74,20 @@ impl TreeSampler<'_> {
             Op::BlendIntersection(s) => {
                 let first = instr.first as usize;
                 self.run_values(self.narrower.arena[first], places, out);
-                each(out, |f| 1.0 - f);
+                self.arch.dispatch(Each { out: &mut *out, f: |f| 1.0 - f });
                 for at in instr.operands().skip(1) {
                     self.joined(at, places, out, |u, g| {
                         combine::soft_outside(plain(u), plain(1.0 - g), s).value
                     });
                 }
-                each(out, |u| larger(1.0 - u, 0.0));
+                self.arch.dispatch(Each { out, f: |u| larger(1.0 - u, 0.0) });
             }
             Op::BlendDifference(s) => {
                 self.run_values(self.narrower.arena[instr.first as usize], places, out);
                 let mut cut = self.scratch.take_values(places.rows());
                 self.ricci_values(s, instr.first as usize + 1..instr.operands().end, places, &mut cut);
-                self.arch.dispatch(|| {
-                    zip(out, &cut, |f, g| combine::soft_cut(plain(f), plain(g), s).value);
-                });
+                let f = |f, g| combine::soft_cut(plain(f), plain(g), s).value;
+                self.arch.dispatch(Zip { out, operand: &cut, f });
                 self.scratch.give_values(cut);
             }
             Op::GradientBlend(_) => {
@@ -121,7 +107,7 @@ impl TreeSampler<'_> {
             return;
         }
         let leaf = &tree.leaves[leaf as usize];
-        with_kernel!(leaf, kernel => arch.dispatch(|| kernel_values(kernel, places, out)));
+        with_kernel!(leaf, kernel => arch.dispatch(KernelValues { kernel, places, out }));
     }
 
     fn sum_values<B: Batch>(&mut self, instr: Instr, places: &B, out: &mut [[f32; ROW]]) {
@@ -159,12 +145,11 @@ impl TreeSampler<'_> {
             return;
         };
         self.run_values(self.narrower.arena[first], places, out);
-        let term = |f: f32| ricci.term(plain(f)).value;
-        self.arch.dispatch(|| each(out, term));
+        self.arch.dispatch(Each { out: &mut *out, f: |f| ricci.term(plain(f)).value });
         for at in operands {
             self.joined(at, places, out, |f, g| ricci.join(plain(f), ricci.term(plain(g))).value);
         }
-        self.arch.dispatch(|| each(out, |f| ricci.root(plain(f)).value));
+        self.arch.dispatch(Each { out, f: |f| ricci.root(plain(f)).value });
     }
 
     fn fold_values<B: Batch>(
@@ -190,36 +175,8 @@ impl TreeSampler<'_> {
     ) {
         let mut operand = self.scratch.take_values(places.rows());
         self.run_values(self.narrower.arena[at], places, &mut operand);
-        self.arch.dispatch(|| zip(out, &operand, join));
+        self.arch.dispatch(Zip { out, operand: &operand, f: join });
         self.scratch.give_values(operand);
-    }
-}
-
-#[inline(always)]
-fn kernel_values<K: Kernel, P: Places>(kernel: &K, places: &P, out: &mut [[f32; ROW]]) {
-    for (r, out) in out.iter_mut().enumerate() {
-        let row = places.row(r);
-        for (i, value) in out.iter_mut().enumerate() {
-            *value = kernel.at(row.place(i)).value;
-        }
-    }
-}
-
-#[inline(always)]
-fn each(out: &mut [[f32; ROW]], f: impl Fn(f32) -> f32) {
-    for row in out {
-        for value in row {
-            *value = f(*value);
-        }
-    }
-}
-
-#[inline(always)]
-fn zip(out: &mut [[f32; ROW]], operand: &[[f32; ROW]], f: impl Fn(f32, f32) -> f32) {
-    for (row, other) in out.iter_mut().zip(operand) {
-        for i in 0..ROW {
-            row[i] = f(row[i], other[i]);
-        }
     }
 }
 

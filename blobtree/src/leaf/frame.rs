@@ -33,9 +33,7 @@ impl Frame {
     #[inline(always)]
     pub fn apply<S: Scalar>(&self, p: Triple<S>) -> Triple<S> {
         let m = |r: usize, c: usize| S::of(self.rows[r][c]);
-        std::array::from_fn(|r| {
-            m(r, 0) * p[0] + ((m(r, 1) * p[1] + m(r, 2) * p[2]) + S::of(self.offset[r]))
-        })
+        std::array::from_fn(|r| m(r, 0) * p[0] + ((m(r, 1) * p[1] + m(r, 2) * p[2]) + S::of(self.offset[r])))
     }
 
     /// The derivatives of the leaf's coordinates (rows) by those of the place (columns).

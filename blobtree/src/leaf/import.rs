@@ -31,7 +31,13 @@ impl Kernel for Import {
     fn at<S: Scalar>(&self, p: Triple<S>) -> Slope<S> {
         let q = self.frame.apply(p);
         let place = Vec3::from_array(q.map(S::value));
-        let Some(nearest) = self.distance.nearest_within(place, self.falloff.width()) else {
+        // Far from the surface, on both sides, the field is constant, and the search for it short.
+        let limit = self.falloff.width().max(self.falloff.core);
+        let signed = self.distance.signed_distance_within(place, limit);
+        if signed >= self.falloff.width() || signed <= -self.falloff.core {
+            return Slope::constant(if signed > 0.0 { 0.0 } else { 1.0 });
+        }
+        let Some(nearest) = self.distance.nearest(place) else {
             return Slope::constant(0.0);
         };
         let out = nearest.gradient.to_array().map(S::of);

@@ -169,7 +169,9 @@ impl Leaf {
                 let (frame, circle) = (place(p.center, facing(p.normal)), Circle { radius: p.major_radius });
                 match p.falloff {
                     None => Self::PureCircle(PureSkeletal::new(frame, circle, p.minor_radius)),
-                    Some(w) => Self::Circle(Skeletal::new(frame, circle, p.minor_radius, Falloff::of_width(w))),
+                    Some(w) => {
+                        Self::Circle(Skeletal::new(frame, circle, p.minor_radius, Falloff::of_width(w)))
+                    }
                 }
             }
             Primitive::Ellipsoid(p) => {
@@ -236,10 +238,7 @@ fn widened_cone(cone: &Cone, width: f32) -> Aabb {
     let growth = (cone.radius_to - cone.radius_from) / length;
     let out = width * (1.0 + growth * growth).sqrt();
     let radius = |z: f32| (cone.radius_from + growth * z + out).max(0.0);
-    around_axis(
-        (cone.from - axis * width, radius(-width)),
-        (cone.to + axis * width, radius(length + width)),
-    )
+    around_axis((cone.from - axis * width, radius(-width)), (cone.to + axis * width, radius(length + width)))
 }
 
 /// The box around two discs about the line through their centres, each given by centre and radius.
@@ -259,9 +258,7 @@ fn around_disc(center: Vec3, normal: Vec3, radius: f32) -> Aabb {
 pub(crate) fn surface_box(primitive: &Primitive) -> (Aabb, f32, Option<f32>) {
     match primitive {
         Primitive::Point(p) => (Aabb::around(p.center, Vec3::splat(p.radius)), p.radius, p.falloff),
-        Primitive::Segment(p) => {
-            (Aabb::from_corners(p.from, p.to).grown(p.radius), p.radius, p.falloff)
-        }
+        Primitive::Segment(p) => (Aabb::from_corners(p.from, p.to).grown(p.radius), p.radius, p.falloff),
         Primitive::Polyline(p) => {
             let ball = |q: &PolylinePoint| Aabb::around(q.at, Vec3::splat(q.radius));
             let surface = p.points.iter().fold(Aabb::EMPTY, |b, q| b.union(&ball(q)));
@@ -299,8 +296,8 @@ pub(crate) fn surface_box(primitive: &Primitive) -> (Aabb, f32, Option<f32>) {
             (ball.intersection(&half), p.extent, Some(p.falloff))
         }
         Primitive::Mesh(p) => {
-            let (min, max) = p.distance.bounds();
-            (Aabb { min, max }, p.falloff, Some(p.falloff))
+            let bounds = p.distance.bounds();
+            (Aabb { min: bounds.min, max: bounds.max }, p.falloff, Some(p.falloff))
         }
     }
 }

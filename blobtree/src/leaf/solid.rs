@@ -266,7 +266,8 @@ impl Spheroid {
     #[inline(always)]
     fn inside<S: Scalar>(&self, q: Triple<S>) -> Slope<S> {
         let inverse = self.radii.recip();
-        let over = |power: i32| -> Triple<S> { std::array::from_fn(|i| q[i] * S::of(inverse[i].powi(power))) };
+        let over =
+            |power: i32| -> Triple<S> { std::array::from_fn(|i| q[i] * S::of(inverse[i].powi(power))) };
         let (a, b, c) = (over(1), over(2), over(4));
         // Near the centre, where both vanish, their ratio is kept at the largest radius.
         let k0 = dot(a, a).sqrt().larger(S::of(1e-6));

@@ -36,7 +36,11 @@ pub(super) fn check(text: &str) -> Result<(), SceneError> {
         } else {
             continue;
         };
-        return Err(SceneError { at: Some(TextPosition::of_offset(text.as_bytes(), offset)), node: None, problem });
+        return Err(SceneError {
+            at: Some(TextPosition::of_offset(text.as_bytes(), offset)),
+            node: None,
+            problem,
+        });
     }
     Ok(())
 }

@@ -71,7 +71,11 @@ impl Checker {
     /// Leaves `path` at the node that is wrong.
     fn node(&mut self, node: &NodeRef) -> Result<Size, SceneProblem> {
         if let Some(&size) = self.seen.get(&std::ptr::from_ref(&**node)) {
-            return if self.path.len() + size.height > MAX_DEPTH { Err(SceneProblem::TooDeep) } else { Ok(size) };
+            return if self.path.len() + size.height > MAX_DEPTH {
+                Err(SceneProblem::TooDeep)
+            } else {
+                Ok(size)
+            };
         }
         if self.path.len() >= MAX_DEPTH {
             return Err(SceneProblem::TooDeep);

@@ -52,7 +52,8 @@ enum State {
 
 fn circle(open: &[(&str, usize)], first: &str) -> Fault {
     let start = open.iter().position(|(name, _)| *name == first).unwrap_or(0);
-    let mut names: Vec<String> = open[start..].iter().map(|(name, _)| super::error::shortened(name)).collect();
+    let mut names: Vec<String> =
+        open[start..].iter().map(|(name, _)| super::error::shortened(name)).collect();
     if names.len() > 12 {
         names.truncate(12);
         names.push("…".into());

@@ -42,7 +42,9 @@ pub enum SceneProblem {
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// There is no text.
-    #[error("the file is empty; a scene begins with {{\"format\": \"trullo\", \"version\": {VERSION}, \"root\": …")]
+    #[error(
+        "the file is empty; a scene begins with {{\"format\": \"trullo\", \"version\": {VERSION}, \"root\": …"
+    )]
     Empty,
     /// The text is too long.
     #[error("larger than {} MiB, the most that a scene file may be", MAX_FILE_BYTES >> 20)]

@@ -1,6 +1,7 @@
 //! Lines and indentation for JSON text: whatever fits on one line stays on one.
 
-/// Longest line that is made by putting values side by side.
+/// Longest line that is made by putting values side by side, without its indentation: a primitive deep in a
+/// tree is as easy to read as one at the top.
 const WIDTH: usize = 100;
 
 /// Lays out JSON text that has no spaces outside strings. Ends in a line break.
@@ -52,12 +53,11 @@ pub(super) fn lay_out(compact: &str) -> String {
     out
 }
 
-/// Returns where the new line starts.
+/// Returns where the new line's text starts.
 fn break_line(out: &mut String, indent: usize) -> usize {
     out.push('\n');
-    let start = out.len();
     out.extend(std::iter::repeat_n("  ", indent));
-    start
+    out.len()
 }
 
 /// The width of every bracketed value, on one line, in the order of their opening brackets.

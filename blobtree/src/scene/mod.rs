@@ -116,8 +116,8 @@ impl Scene {
 
     /// The text of the scene's file: the same bytes for equal scenes that share alike.
     ///
-    /// - **Promises:** [`Self::from_bytes`] reads it back equal, numbers bit by bit, sharing included; writing
-    ///   that gives the same text again. Shared nodes without a definition get one.
+    /// - **Promises:** [`Self::from_bytes`] reads it back equal, sharing included; writing that gives the same
+    ///   text again. Shared nodes without a definition get one.
     /// - **Cost:** linear in the text; each shared node is written once.
     /// - **Errors:** what [`Self::check`] finds, and text that would be too large to be read again.
     pub fn to_text(&self) -> Result<String, SceneError> {
@@ -145,6 +145,7 @@ pub struct MeshReference {
     pub sha256: String,
     /// How far the influence reaches beyond the surface, mm. Default: 5.
     #[serde(default = "five")]
+    #[schemars(range(min = 0.001, max = 100_000.0))]
     pub falloff: f32,
 }
 

@@ -30,9 +30,8 @@ pub(super) fn take<T: DeserializeOwned>(
 ///
 /// Errors: a value of another type than `expected` says, or none.
 pub(super) fn need(map: &mut Map<String, Value>, field: &str, expected: &str) -> Result<Value, FieldFault> {
-    map.remove(field).ok_or_else(|| {
-        (vec![], SceneProblem::Missing { field: field.into(), expected: expected.into() })
-    })
+    map.remove(field)
+        .ok_or_else(|| (vec![], SceneProblem::Missing { field: field.into(), expected: expected.into() }))
 }
 
 /// Errors: a field is left over. `legal` are those that would be right.
@@ -76,12 +75,12 @@ fn fault(
     let field = error.path().to_string();
     let backticked = || message.split('`').nth(1).unwrap_or_default().to_owned();
     let problem = if message.starts_with("missing field") {
-        let field = backticked();
-        let expected = if field.is_empty() { "see the format's description" } else { "the node needs it" };
-        SceneProblem::Missing { field, expected: expected.into() }
+        let name = backticked();
+        let field = if steps.is_empty() { name } else { format!("{field}.{name}") };
+        SceneProblem::Missing { field, expected: "the node needs it".into() }
     } else if message.starts_with("unknown field") {
         let legal = message.split_once("expected ").map_or("", |(_, legal)| legal);
-        let mut legal = legal.trim_start_matches("one of ").replace('`', "");
+        let mut legal = legal.trim_start_matches("one of ").replace(" or ", ", ").replace('`', "");
         if steps.len() == 1 {
             legal = format!("{legal}, {}", others.join(", "));
         }

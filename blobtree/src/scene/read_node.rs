@@ -71,7 +71,11 @@ impl<'a> NodeReader<'a> {
         Fault { steps: self.steps.iter().cloned().chain(steps).collect(), problem }
     }
 
-    fn at<T>(&mut self, steps: &[Step], read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
+    fn at<T>(
+        &mut self,
+        steps: &[Step],
+        read: impl FnOnce(&mut Self) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
         let depth = self.steps.len();
         self.steps.extend_from_slice(steps);
         let done = read(self)?;
@@ -120,7 +124,9 @@ impl<'a> NodeReader<'a> {
         let mut node = self.common(fields)?;
         let (type_name, kind) = self.kind(fields)?;
         let (shape, size) = match kind {
-            Kind::Primitive => (Shape::Primitive(self.primitive(&type_name, fields)?), Size::over([].into_iter())),
+            Kind::Primitive => {
+                (Shape::Primitive(self.primitive(&type_name, fields)?), Size::over([].into_iter()))
+            }
             Kind::Operator(operator) => {
                 let (children, size) = self.children(fields, depth)?;
                 let own = operator.sharpness().map(|_| "sharpness");
@@ -130,7 +136,8 @@ impl<'a> NodeReader<'a> {
             }
             Kind::Warp => {
                 let expected = "the node that is warped";
-                let child = parameters::need(fields, "child", expected).map_err(|fault| self.fault_in(fault))?;
+                let child =
+                    parameters::need(fields, "child", expected).map_err(|fault| self.fault_in(fault))?;
                 let warp = self.warp(&type_name, fields)?;
                 let (child, size) = self.at(&[Step::key("child")], |reader| reader.node(child, depth + 1))?;
                 (Shape::Warp(warp, child), Size::over([size].into_iter()))
@@ -152,7 +159,8 @@ impl<'a> NodeReader<'a> {
         let in_here = |fault| self.fault_in(fault);
         let mut node = Node::new(Shape::Operator(Operator::Union, Vec::new()));
         node.name = parameters::take(fields, "name", "a text").map_err(in_here)?;
-        let color: Option<String> = parameters::take(fields, "color", "a text like \"#ff8800\"").map_err(in_here)?;
+        let color: Option<String> =
+            parameters::take(fields, "color", "a text like \"#ff8800\"").map_err(in_here)?;
         if let Some(color) = color {
             let color = color.parse::<Color>().map_err(|_| {
                 let shown = described(&color.as_str().into());
@@ -169,10 +177,15 @@ impl<'a> NodeReader<'a> {
 
     fn kind(&self, fields: &mut Fields) -> Result<(String, Kind), Fault> {
         let in_here = |fault| self.fault_in(fault);
-        let value = parameters::need(fields, "type", "what the node is, such as \"point\"").map_err(in_here)?;
+        let value =
+            parameters::need(fields, "type", "what the node is, such as \"point\"").map_err(in_here)?;
         let at_type = |problem| self.fault_in((vec![Step::key("type")], problem));
         let Value::String(name) = value else {
-            return Err(at_type(parameters::wrong("type", described(&value), "a node type such as \"point\"")));
+            return Err(at_type(parameters::wrong(
+                "type",
+                described(&value),
+                "a node type such as \"point\"",
+            )));
         };
         let kind = match name.as_str() {
             "union" => Kind::Operator(Operator::Union),
@@ -191,7 +204,8 @@ impl<'a> NodeReader<'a> {
     }
 
     fn sharpness(&self, fields: &mut Fields) -> Result<Sharpness, Fault> {
-        let given = parameters::take(fields, "sharpness", "a number").map_err(|fault| self.fault_in(fault))?;
+        let given =
+            parameters::take(fields, "sharpness", "a number").map_err(|fault| self.fault_in(fault))?;
         given.map_or(Ok(Sharpness::DEFAULT), |s| {
             Sharpness::new(s).map_err(|e| self.fault_in((vec![Step::key("sharpness")], e.into())))
         })
@@ -255,7 +269,8 @@ impl<'a> NodeReader<'a> {
             Some(distance) => distance.clone(),
             None => {
                 let distance = self.meshes.load(&reference).map_err(|reason| {
-                    let problem = SceneProblem::Mesh { file: super::error::shortened(&reference.file), reason };
+                    let problem =
+                        SceneProblem::Mesh { file: super::error::shortened(&reference.file), reason };
                     self.fault_in((vec![Step::key("file")], problem))
                 })?;
                 self.loaded.insert(key, distance.clone());

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::{Attachments, Notice, Format, Loaded, Place, ReadError, ReadLimits};
 use super::weld::Welder;
+use super::{Attachments, Format, Loaded, Notice, Place, ReadError, ReadLimits};
 use crate::Mesh;
 
 pub(super) struct MeshBuilder {
@@ -52,7 +52,11 @@ impl MeshBuilder {
     }
 
     /// Adds a triangle unless two corners are the same vertex. Its indices are checked by the caller.
-    pub(super) fn triangle(&mut self, corners: [u32; 3], place: impl FnOnce() -> Place) -> Result<(), ReadError> {
+    pub(super) fn triangle(
+        &mut self,
+        corners: [u32; 3],
+        place: impl FnOnce() -> Place,
+    ) -> Result<(), ReadError> {
         self.seen += 1;
         let [a, b, c] = corners;
         if a == b || b == c || c == a {

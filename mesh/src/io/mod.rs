@@ -1,7 +1,7 @@
 //! Mesh files: STL, OBJ, PLY and 3MF to and from any [`Read`] or [`Write`].
 //!
 //! Reach for it whenever triangles enter or leave the program. [`read`] believes the content rather than the
-//! name, converts to millimetres, and reports what it noticed; [`write`] refuses a mesh that no reader could
+//! name, converts to millimetres, and reports what it noticed; [`write()`] refuses a mesh that no reader could
 //! take back. Neither opens files, repairs meshes, or judges whether they print.
 //!
 //! Files come from strangers: no input panics, hangs, or makes a reader allocate by an announced count. What
@@ -70,9 +70,7 @@ impl Format {
     pub fn from_extension(extension: &str) -> Option<Self> {
         let formats = [Self::Stl, Self::Obj, Self::Ply, Self::ThreeMf];
         let known = Self::EXTENSIONS.iter().zip(formats);
-        known
-            .into_iter()
-            .find_map(|(known, format)| extension.eq_ignore_ascii_case(known).then_some(format))
+        known.into_iter().find_map(|(known, format)| extension.eq_ignore_ascii_case(known).then_some(format))
     }
 
     /// The format that a path's extension stands for.
@@ -121,7 +119,7 @@ impl fmt::Display for Format {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadLimits {
     /// Bytes in the file, and bytes unpacked from a 3MF package. A package is further held to a hundred times
-    /// its packed size (but at least 64 MiB), which no honest model reaches and every zip bomb passes.
+    /// its packed size (but at least 16 MiB), which no honest model reaches and every zip bomb passes.
     pub max_bytes: u64,
     /// Triangles after polygons are cut and 3MF copies are placed.
     pub max_triangles: u64,

@@ -87,7 +87,10 @@ impl fmt::Display for Notice {
                 write!(f, "{count} statements without a surface were left out, the first on line {first}")
             }
             Self::SkippedObjects { count } => {
-                write!(f, "{count} objects that are not part of the model (supports, modifiers) were left out")
+                write!(
+                    f,
+                    "{count} objects that are not part of the model (supports, modifiers) were left out"
+                )
             }
             Self::NothingBuilt => {
                 f.write_str("the build section is empty; every object was read where it is defined")

@@ -4,17 +4,20 @@ use std::io::{BufRead, BufWriter, Write};
 
 use glam::Vec3;
 
-use super::builder::{MeshBuilder, check};
+use super::builder::MeshBuilder;
 use super::error::quoted;
 use super::number::{AXES, coordinate, write_point};
-use super::polygon::{Faces, MAX_CORNERS};
+use super::polygon::{Faces, check_corners};
 use super::text::{Lines, words};
-use super::{Notice, Format, Loaded, Place, ReadError, ReadLimits, WriteError};
+use super::{Format, Loaded, Notice, Place, ReadError, ReadLimits, WriteError};
 use crate::Mesh;
 
 /// Statements that describe looks or groups and say nothing about the surface.
 const SILENT: [&[u8]; 11] =
     [b"vt", b"vn", b"g", b"o", b"s", b"mtllib", b"usemtl", b"mg", b"lod", b"shadow_obj", b"usemap"];
+
+/// After this many unknown statements and not one vertex, a file is not read to its end.
+const ENOUGH_FOREIGN: u64 = 10_000;
 
 pub(super) fn read(reader: impl BufRead, limits: &ReadLimits) -> Result<Loaded, ReadError> {
     let mut lines = Lines::new(reader);
@@ -36,10 +39,14 @@ pub(super) fn read(reader: impl BufRead, limits: &ReadLimits) -> Result<Loaded, 
                 face(words, builder.vertices(), &place, &mut corners)?;
                 faces.add(&mut builder, &corners, place)?;
             }
-            Some(word) if word.starts_with(b"#") || SILENT.contains(&word) || is_mark(lines.number, word) => {}
+            Some(word) if word.starts_with(b"#") || SILENT.contains(&word) || is_mark(lines.number, word) => {
+            }
             Some(_) => {
                 skipped += 1;
                 first_skipped = if skipped == 1 { lines.number } else { first_skipped };
+                if skipped >= ENOUGH_FOREIGN && builder.vertices() == 0 {
+                    break;
+                }
             }
         }
     }
@@ -89,16 +96,18 @@ fn face<'a>(
         };
         let counted = if index > 0 { index - 1 } else { index.saturating_add(vertices as i64) };
         // The highest indices cannot be counted, so no file can have as many vertices.
-        let corner = u32::try_from(counted).ok().filter(|&corner| corner < i32::MAX as u32).ok_or_else(|| {
-            ReadError::IndexOutOfRange { place: place.clone(), index, vertices: vertices as u64, first: 1 }
-        })?;
+        let corner =
+            u32::try_from(counted).ok().filter(|&corner| corner < i32::MAX as u32).ok_or_else(|| {
+                ReadError::IndexOutOfRange {
+                    place: place.clone(),
+                    index,
+                    vertices: vertices as u64,
+                    first: 1,
+                }
+            })?;
         corners.push(corner);
     }
-    if corners.len() < 3 {
-        let found = format!("a face with {} corners", corners.len());
-        return Err(ReadError::Malformed { place: place.clone(), found, expected: "at least 3".to_owned() });
-    }
-    check(corners.len() as u64, MAX_CORNERS, "corners of one face", || place.clone())
+    check_corners(corners.len() as u64, || place.clone())
 }
 
 pub(super) fn write(writer: impl Write, mesh: &Mesh) -> Result<(), WriteError> {

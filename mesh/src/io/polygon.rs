@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, Vec3, Vec3Swizzles};
 
-use super::builder::MeshBuilder;
+use super::builder::{MeshBuilder, check};
 use super::{Notice, Place, ReadError};
 
 /// Point-in-triangle tests that one file may cost, a fraction of a second. Real models need a few for every
@@ -10,7 +10,16 @@ use super::{Notice, Place, ReadError};
 const BUDGET: u64 = 30_000_000;
 
 /// Most corners of one face.
-pub(super) const MAX_CORNERS: u64 = 100_000;
+const MAX_CORNERS: u64 = 100_000;
+
+/// Refuses faces without a surface, and those of absurd length.
+pub(super) fn check_corners(count: u64, place: impl FnOnce() -> Place) -> Result<(), ReadError> {
+    if count >= 3 {
+        return check(count, MAX_CORNERS, "corners of one face", place);
+    }
+    let (found, expected) = (format!("a face with {count} corners"), "at least 3".to_owned());
+    Err(ReadError::Malformed { place: place(), found, expected })
+}
 
 /// Takes the faces of an OBJ or PLY file: checks their indices, cuts them, hands the triangles on.
 pub(super) struct Faces {
@@ -29,22 +38,24 @@ impl Faces {
         Self { first_index, budget: BUDGET, fanned: 0, first_fanned: None, highest: None, flat: Vec::new() }
     }
 
-    /// Adds a face with corners counted from 0; fewer than three have no surface and are passed over.
+    /// Adds a face of at least three corners ([`check_corners`]), counted from 0.
     ///
     /// Convex faces become fans, others are cut ear by ear. Corners beyond the vertices read so far are taken
     /// on trust until [`Self::finish`], and their face is cut into a fan.
-    pub(super) fn add(&mut self, builder: &mut MeshBuilder, corners: &[u32], place: Place) -> Result<(), ReadError> {
+    pub(super) fn add(
+        &mut self,
+        builder: &mut MeshBuilder,
+        corners: &[u32],
+        place: Place,
+    ) -> Result<(), ReadError> {
         let Some(&top) = corners.iter().max() else {
             return Ok(());
         };
         if self.highest.as_ref().is_none_or(|&(highest, _)| top > highest) {
             self.highest = Some((top, place.clone()));
         }
-        if corners.len() <= 3 {
-            return match *corners {
-                [a, b, c] => builder.triangle([a, b, c], || place),
-                _ => Ok(()),
-            };
+        if let [a, b, c] = *corners {
+            return builder.triangle([a, b, c], || place);
         }
         let known = self.flatten(corners, &builder.mesh.positions);
         if known && is_strictly_convex(&self.flat) {
@@ -93,20 +104,28 @@ impl Faces {
             (0, 1, normal.z)
         };
         let sides = if facing < 0.0 { (v, u) } else { (u, v) };
-        self.flat.extend(corners.iter().filter_map(|&index| point(index)).map(|p| DVec2::new(p[sides.0], p[sides.1])));
+        self.flat.extend(
+            corners.iter().filter_map(|&index| point(index)).map(|p| DVec2::new(p[sides.0], p[sides.1])),
+        );
         true
     }
 
     /// Cuts off ears until a triangle is left; whatever has no ear, or costs too much, is cut into a fan, and
     /// that is told by `false`.
-    fn clip_ears(&mut self, builder: &mut MeshBuilder, corners: &[u32], place: &Place) -> Result<bool, ReadError> {
+    fn clip_ears(
+        &mut self,
+        builder: &mut MeshBuilder,
+        corners: &[u32],
+        place: &Place,
+    ) -> Result<bool, ReadError> {
         let mut ring: Vec<usize> = (0..corners.len()).collect();
         let mut at = 0;
         let mut tried = 0;
         while ring.len() > 3 && tried < ring.len() && self.budget >= ring.len() as u64 {
             self.budget -= ring.len() as u64;
             let count = ring.len();
-            let [before, here, after] = [(at + count - 1) % count, at % count, (at + 1) % count].map(|i| ring[i]);
+            let [before, here, after] =
+                [(at + count - 1) % count, at % count, (at + 1) % count].map(|i| ring[i]);
             if is_ear(&self.flat, &ring, [before, here, after]) {
                 builder.triangle([before, here, after].map(|i| corners[i]), || place.clone())?;
                 ring.remove(at % count);
@@ -124,7 +143,10 @@ impl Faces {
 }
 
 fn fan(builder: &mut MeshBuilder, corners: &[u32], place: &Place) -> Result<(), ReadError> {
-    corners.windows(2).skip(1).try_for_each(|pair| builder.triangle([corners[0], pair[0], pair[1]], || place.clone()))
+    corners
+        .windows(2)
+        .skip(1)
+        .try_for_each(|pair| builder.triangle([corners[0], pair[0], pair[1]], || place.clone()))
 }
 
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {

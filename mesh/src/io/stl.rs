@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::builder::{MeshBuilder, check};
 use super::number::finite;
 use super::weld::Welder;
-use super::{Notice, Format, Loaded, Place, ReadError, ReadLimits, WriteError, count_for};
+use super::{Format, Loaded, Notice, Place, ReadError, ReadLimits, WriteError, count_for};
 use crate::Mesh;
 
 const HEADER: u64 = 84;
@@ -59,7 +59,8 @@ pub(super) fn read(mut reader: impl Read, length: u64, limits: &ReadLimits) -> R
 }
 
 fn read_records(mut reader: impl Read, count: u64, builder: &mut MeshBuilder) -> Result<(), ReadError> {
-    let mut welder = Welder::new();
+    // A closed mesh has half as many vertices as triangles, and the file is long enough for its triangles.
+    let mut welder = Welder::with_room(count as usize / 2);
     let mut chunk = vec![0; 1024 * RECORD_BYTES];
     let mut triangle = 0;
     while triangle < count {

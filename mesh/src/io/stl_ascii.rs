@@ -10,7 +10,7 @@ use super::number::{AXES, write_point};
 use super::stl::normal;
 use super::text::{Lines, Words};
 use super::weld::Welder;
-use super::{Notice, Format, Loaded, ReadError, ReadLimits, WriteError};
+use super::{Format, Loaded, Notice, ReadError, ReadLimits, WriteError};
 use crate::Mesh;
 
 /// Most words between `facet` and `outer`: `normal` and three numbers, with room for odd exporters.
@@ -26,7 +26,7 @@ pub(super) fn looks_like(beginning: &[u8]) -> bool {
 pub(super) fn read(reader: impl BufRead, limits: &ReadLimits) -> Result<Loaded, ReadError> {
     let mut words = Words::new(Lines::new(reader));
     let mut builder = MeshBuilder::new(limits);
-    let mut welder = Welder::new();
+    let mut welder = Welder::with_room(0);
     let mut ended = false;
     while let Some(word) = words.next()? {
         let word = word.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(word);
@@ -48,13 +48,21 @@ pub(super) fn read(reader: impl BufRead, limits: &ReadLimits) -> Result<Loaded, 
 }
 
 /// Reads a facet, its first word being taken.
-fn facet<R: BufRead>(words: &mut Words<R>, welder: &mut Welder, builder: &mut MeshBuilder) -> Result<(), ReadError> {
+fn facet<R: BufRead>(
+    words: &mut Words<R>,
+    welder: &mut Welder,
+    builder: &mut MeshBuilder,
+) -> Result<(), ReadError> {
     let mut normal_words = 0;
     while !words.need("outer loop")?.eq_ignore_ascii_case(b"outer") {
         normal_words += 1;
         if normal_words > MAX_NORMAL_WORDS {
             let found = "more than a normal".to_owned();
-            return Err(ReadError::Malformed { place: words.place(), found, expected: "outer loop".to_owned() });
+            return Err(ReadError::Malformed {
+                place: words.place(),
+                found,
+                expected: "outer loop".to_owned(),
+            });
         }
     }
     words.keyword("loop")?;

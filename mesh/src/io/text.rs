@@ -28,7 +28,7 @@ impl<R: BufRead> Lines<R> {
     /// The next line, or `None` at the end.
     pub(super) fn next(&mut self) -> Result<Option<&[u8]>, ReadError> {
         self.line.clear();
-        Ok(if self.append()? { Some(&self.line) } else { None })
+        Ok(self.append()?.then_some(&self.line))
     }
 
     /// The next line, joined with those that follow while it ends in a backslash.
@@ -157,7 +157,8 @@ impl<R: BufRead> Words<R> {
         loop {
             let rest = &self.lines.line()[self.at..];
             if let Some(start) = rest.iter().position(|byte| !byte.is_ascii_whitespace()) {
-                let length = rest[start..].iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len() - start);
+                let length =
+                    rest[start..].iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len() - start);
                 let begin = self.at + start;
                 self.at = begin + length;
                 return Ok(Some(begin..begin + length));

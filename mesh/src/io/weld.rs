@@ -17,8 +17,9 @@ pub(super) struct Welder {
 }
 
 impl Welder {
-    pub(super) fn new() -> Self {
-        Self { table: HashTable::new(), hasher: RandomState::new() }
+    /// With room for this many vertices, which the caller has reason to expect.
+    pub(super) fn with_room(vertices: usize) -> Self {
+        Self { table: HashTable::with_capacity(vertices), hasher: RandomState::new() }
     }
 
     /// The index of `position` in `positions`; pushes it if no bit-identical one is there. The caller keeps
@@ -50,12 +51,11 @@ fn bits(position: Vec3) -> [u32; 3] {
 /// corner by it are left out. Vertices keep the order in which triangles first use them. Indices must be in range.
 /// **Cost:** O(triangles).
 pub fn weld(mesh: &Mesh) -> (Mesh, usize) {
-    let mut welder = Welder::new();
+    let mut welder = Welder::with_room(mesh.positions.len());
     let mut positions = Vec::new();
     let mut triangles = Vec::with_capacity(mesh.triangles.len());
     for corners in &mesh.triangles {
-        let [a, b, c] =
-            corners.map(|index| welder.index_of(mesh.positions[index as usize], &mut positions));
+        let [a, b, c] = corners.map(|index| welder.index_of(mesh.positions[index as usize], &mut positions));
         if a != b && b != c && c != a {
             triangles.push([a, b, c]);
         }

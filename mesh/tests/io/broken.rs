@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::support::*;
-use mesh::io::{Attachments, Format, Loaded, ReadError, read, write, ReadLimits};
+use mesh::io::{Attachments, Format, Loaded, ReadError, ReadLimits, read, write};
 
 /// Whatever a reader hands out must keep its promises.
 fn check_promises(loaded: &Loaded, what: &str) {
@@ -86,12 +86,16 @@ fn counts_in_headers_are_not_believed() {
     assert!(complaint(&stl, Format::Stl).contains("announces 4294967295 triangles"));
 
     for encoding in ["ascii", "binary_little_endian", "binary_big_endian"] {
-        for (element, count) in [("vertex", "4294967295"), ("face", "18446744073709551615"), ("other", "99999999999")] {
+        for (element, count) in
+            [("vertex", "4294967295"), ("face", "18446744073709551615"), ("other", "99999999999")]
+        {
             let properties = match element {
                 "face" => "property list uchar int vertex_indices\n",
                 _ => "property float x\nproperty float y\nproperty float z\n",
             };
-            let ply = format!("ply\nformat {encoding} 1.0\nelement {element} {count}\n{properties}end_header\n1 2 3\n");
+            let ply = format!(
+                "ply\nformat {encoding} 1.0\nelement {element} {count}\n{properties}end_header\n1 2 3\n"
+            );
             assert!(complaint(ply.as_bytes(), Format::Ply).contains("line 3"), "{encoding} {element}");
         }
         let empty = format!("ply\nformat {encoding} 1.0\nelement vertex 4294967295\nend_header\n");

@@ -2,8 +2,8 @@
 
 use std::io::Cursor;
 
-use glam::Vec3;
 use crate::support::*;
+use glam::Vec3;
 use mesh::Mesh;
 use mesh::io::{Attachments, Format, ReadLimits, WriteError, read, write};
 
@@ -187,9 +187,15 @@ fn a_mesh_that_no_reader_could_take_is_not_written() {
 
 #[test]
 fn metadata_that_xml_cannot_hold_is_refused_by_name() {
-    for (name, value) in
-        [("a b", "x"), ("", "x"), ("1st", "x"), ("a:b", "x"), ("Application", "x"), ("ok", "\u{1}"), ("Title", "x")]
-    {
+    for (name, value) in [
+        ("a b", "x"),
+        ("", "x"),
+        ("1st", "x"),
+        ("a:b", "x"),
+        ("Application", "x"),
+        ("ok", "\u{1}"),
+        ("Title", "x"),
+    ] {
         let attachments = Attachments {
             title: Some("T".to_owned()),
             metadata: vec![(name.to_owned(), value.to_owned())],

@@ -9,7 +9,8 @@ const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 #[test]
 fn ascii_stl_may_be_upper_case_with_crlf_tabs_a_byte_order_mark_and_several_solids() {
     let facet = "\tFACET NORMAL nan(ind) 0 0\r\n\r\n OUTER  LOOP\r\nVERTEX 0 0 0\r\nVertex 1E0 0 0\r\nvertex 0 +1. 0\r\nEndLoop\r\nENDFACET\r\n";
-    let text = format!("\u{FEFF}SOLID facet of ünknown\r\n{facet}ENDSOLID x y\r\n\r\nsolid\r\n{facet}endsolid\r\n");
+    let text =
+        format!("\u{FEFF}SOLID facet of ünknown\r\n{facet}ENDSOLID x y\r\n\r\nsolid\r\n{facet}endsolid\r\n");
     let loaded = load(text.as_bytes(), Format::Stl).expect("it is valid");
     assert_eq!(loaded.mesh.triangles, [[0, 1, 2], [0, 1, 2]]);
     assert_eq!(loaded.mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
@@ -29,7 +30,9 @@ fn a_binary_stl_whose_header_begins_with_solid_is_read_as_binary() {
 #[test]
 fn ascii_stl_errors_name_the_line_the_value_and_what_would_be_right() {
     let with = |vertex: &str| {
-        let text = format!("solid\nfacet normal 0 0 1\nouter loop\n{vertex}\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid");
+        let text = format!(
+            "solid\nfacet normal 0 0 1\nouter loop\n{vertex}\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid"
+        );
         complaint(text.as_bytes(), Format::Stl)
     };
     assert_eq!(
@@ -48,7 +51,9 @@ fn ascii_stl_errors_name_the_line_the_value_and_what_would_be_right() {
 
 #[test]
 fn triangles_without_three_corners_are_left_out_and_counted() {
-    let facet = |z| format!("facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 {z} vertex 1 0 0 endloop endfacet\n");
+    let facet = |z| {
+        format!("facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 {z} vertex 1 0 0 endloop endfacet\n")
+    };
     let text = format!("solid\n{}{}{}", facet(1), facet(0), facet(0));
     let loaded = load(text.as_bytes(), Format::Stl).expect("one triangle is left");
     assert_eq!(loaded.mesh.triangles.len(), 1);
@@ -61,7 +66,10 @@ fn obj_faces_may_have_textures_normals_negative_indices_and_continued_lines() {
     let text = b"# comment\r\nmtllib missing.mtl\r\nv 0 0 0 1.0 0.5 0.5\r\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng a b\n\
         f 1/1/1 3/1/1 2/1/1 # end\nv 0 0 1\nf 1//1 2//1 -1//1\nf 1 \\\n 4 \\\n 3\nf -3 -2 -1\nl 1 2\n";
     let loaded = load(text, Format::Obj).expect("it is valid");
-    assert_eq!(loaded.mesh.triangles, TETRAHEDRON.map(|[a, b, c]| if a == 0 && b == 3 { [0, 3, 2] } else { [a, b, c] }));
+    assert_eq!(
+        loaded.mesh.triangles,
+        TETRAHEDRON.map(|[a, b, c]| if a == 0 && b == 3 { [0, 3, 2] } else { [a, b, c] })
+    );
     assert_eq!(loaded.notices, [Notice::SkippedStatements { count: 1, first: 16 }]);
 }
 
@@ -87,7 +95,8 @@ fn obj_polygons_are_cut_so_that_the_solid_keeps_its_volume() {
 
 #[test]
 fn obj_faces_may_come_before_their_vertices() {
-    let loaded = load(b"f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", Format::Obj).expect("it is unusual, but clear");
+    let loaded =
+        load(b"f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", Format::Obj).expect("it is unusual, but clear");
     assert_eq!(loaded.mesh.triangles, [[0, 1, 2]]);
 }
 
@@ -112,7 +121,9 @@ fn obj_errors_name_the_line_and_the_index_as_written() {
 
 #[test]
 fn endless_lines_are_refused() {
-    for (named, start) in [(Format::Obj, "v 0 0 0\n"), (Format::Stl, "solid\n"), (Format::Ply, "ply\ncomment ")] {
+    for (named, start) in
+        [(Format::Obj, "v 0 0 0\n"), (Format::Stl, "solid\n"), (Format::Ply, "ply\ncomment ")]
+    {
         let text = start.to_owned() + &" 1".repeat(1 << 20);
         assert!(complaint(text.as_bytes(), named).contains("bytes in one line"), "{named}");
     }
@@ -184,14 +195,29 @@ fn ply_errors_name_the_line_or_byte() {
         );
         complaint(text.as_bytes(), Format::Ply)
     };
-    assert_eq!(with("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "line 13: a face uses vertex 3, but vertices run from 0 to 2");
-    assert_eq!(with("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "line 13: a face uses vertex -1, but vertices run from 0 to 2");
+    assert_eq!(
+        with("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+        "line 13: a face uses vertex 3, but vertices run from 0 to 2"
+    );
+    assert_eq!(
+        with("0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"),
+        "line 13: a face uses vertex -1, but vertices run from 0 to 2"
+    );
     assert!(with("0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n").starts_with("line 11: the y coordinate is nan"));
-    assert!(with("0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n").starts_with("line 13: found -3, expected the length of a list"));
+    assert!(
+        with("0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n")
+            .starts_with("line 13: found -3, expected the length of a list")
+    );
+    assert!(
+        with("0 0 0\n1 0 0\n0 1 0\n2 0 1\n")
+            .contains("line 13: found a face with 2 corners, expected at least 3")
+    );
     let mut binary = ply_tetrahedron("binary_little_endian");
     let at = binary.len() - 4;
     binary[at] = 200;
-    assert!(complaint(&binary, Format::Ply).ends_with("a face uses vertex 200, but vertices run from 0 to 3"));
+    assert!(
+        complaint(&binary, Format::Ply).ends_with("a face uses vertex 200, but vertices run from 0 to 3")
+    );
     let header = |lines: &str| complaint(format!("ply\n{lines}").as_bytes(), Format::Ply);
     assert!(header("format ascii 2.0\n").starts_with("line 2: found \"format ascii 2.0\""));
     assert!(header("format ascii 1.0\nproperty float x\n").contains("an element before its properties"));

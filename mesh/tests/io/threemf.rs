@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use glam::Vec3;
 use crate::support::*;
+use glam::Vec3;
 use mesh::io::{Format, Loaded, Notice, ReadError};
 
 const TETRAHEDRON: &str = "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>\
@@ -29,16 +29,24 @@ fn refused(inside: &str) -> String {
 
 #[test]
 fn every_unit_becomes_millimetres_transforms_included() {
-    for (unit, millimetres) in
-        [("micron", 0.001), ("millimeter", 1.0), ("centimeter", 10.0), ("inch", 25.4), ("foot", 304.8), ("meter", 1000.0)]
-    {
+    for (unit, millimetres) in [
+        ("micron", 0.001),
+        ("millimeter", 1.0),
+        ("centimeter", 10.0),
+        ("inch", 25.4),
+        ("foot", 304.8),
+        ("meter", 1000.0),
+    ] {
         let item = "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 2 0 0\"/>";
         let bytes = package(&format!("unit=\"{unit}\""), &model(&object(1, TETRAHEDRON), item));
         let loaded = loaded(&bytes);
         let expected = [[2.0, 0.0, 0.0], [3.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, 0.0, 1.0]]
             .map(|p: [f64; 3]| Vec3::from(p.map(|c| (c * millimetres) as f32)));
         for (found, expected) in loaded.mesh.positions.iter().zip(expected) {
-            assert!((*found - expected).length() <= 1e-6 * millimetres as f32, "{unit}: {found} for {expected}");
+            assert!(
+                (*found - expected).length() <= 1e-6 * millimetres as f32,
+                "{unit}: {found} for {expected}"
+            );
         }
         let told = loaded.notices.iter().any(|notice| matches!(notice, Notice::Converted { .. }));
         assert_eq!(told, unit != "millimeter");
@@ -68,7 +76,8 @@ fn a_mirrored_solid_does_not_turn_inside_out() {
 
 #[test]
 fn several_items_and_instances_are_all_placed_and_supports_are_not() {
-    let resources = object(1, TETRAHEDRON) + &format!("<object id=\"7\" type=\"support\">{TETRAHEDRON}</object>");
+    let resources =
+        object(1, TETRAHEDRON) + &format!("<object id=\"7\" type=\"support\">{TETRAHEDRON}</object>");
     let items = "<item objectid=\"1\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 9 0 0\"/><item objectid=\"7\"/>";
     let loaded = loaded(&package("", &model(&resources, items)));
     assert_eq!((loaded.mesh.positions.len(), loaded.mesh.triangles.len()), (8, 8));
@@ -90,7 +99,10 @@ fn models_split_over_parts_and_relationships_are_followed() {
     let core = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
     let production = "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" requiredextensions=\"p\"";
     let component = "<components><component p:path=\"/3D/Objects/a.model\" objectid=\"5\"/></components>";
-    let root = format!("<model {core} {production}>{}</model>", model(&object(1, component), "<item objectid=\"1\"/>"));
+    let root = format!(
+        "<model {core} {production}>{}</model>",
+        model(&object(1, component), "<item objectid=\"1\"/>")
+    );
     let child = format!("<model unit=\"centimeter\" {core}>{}</model>", model(&object(5, TETRAHEDRON), ""));
     let relationships = "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\
         <Relationship Target=\"/odd/name.model\" Id=\"a\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\
@@ -129,28 +141,40 @@ fn errors_name_the_part_the_byte_and_what_would_be_right() {
     assert!(item("<item objectid=\"2\"/>").contains("found object 2, expected the id of an object"));
     assert!(item("<item objectid=\"-2\"/>").contains("expected objectid"));
     assert!(item("<item objectid=\"1\" transform=\"1 0 0\"/>").contains("twelve finite numbers"));
-    assert!(item("<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 0 0 0 0\"/>").contains("does not flatten"));
-    assert!(item("<item objectid=\"1\" transform=\"1e38 0 0 0 1e38 0 0 0 1 1e39 0 0\"/>").contains("x coordinate is inf"));
+    assert!(
+        item("<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 0 0 0 0\"/>").contains("does not flatten")
+    );
+    assert!(
+        item("<item objectid=\"1\" transform=\"1e38 0 0 0 1e38 0 0 0 1 1e39 0 0\"/>")
+            .contains("x coordinate is inf")
+    );
     let twice = object(1, TETRAHEDRON) + &object(1, TETRAHEDRON);
     assert!(refused(&model(&twice, "")).contains("a second object 1"));
     assert!(refused(&model("", "")).contains("no triangles in this 3MF file"));
     let beams = package("xmlns:b=\"urn:beams\" requiredextensions=\"b\"", &model("", ""));
     assert!(complaint(&beams, Format::ThreeMf).contains("\"urn:beams\""));
-    assert!(complaint(&zipped(&[("readme.txt", b"hello")]), Format::ThreeMf).contains("no part 3D/3dmodel.model"));
+    assert!(
+        complaint(&zipped(&[("readme.txt", b"hello")]), Format::ThreeMf).contains("no part 3D/3dmodel.model")
+    );
     assert!(complaint(b"not a zip", Format::ThreeMf).contains("no zip package"));
 }
 
 #[test]
 fn document_types_and_endless_nesting_are_refused() {
     let entity = "<!DOCTYPE model [<!ENTITY a \"&a;&a;\">]><model/>";
-    assert!(complaint(&zipped(&[("3D/3dmodel.model", entity.as_bytes())]), Format::ThreeMf).contains("a document type"));
+    assert!(
+        complaint(&zipped(&[("3D/3dmodel.model", entity.as_bytes())]), Format::ThreeMf)
+            .contains("a document type")
+    );
     assert!(refused(&"<a>".repeat(100_000)).contains("XML elements inside each other"));
 }
 
 #[test]
 fn circles_and_copies_of_copies_are_refused_at_once() {
     let begun = Instant::now();
-    let pair = |of: u32| format!("<components><component objectid=\"{of}\"/><component objectid=\"{of}\"/></components>");
+    let pair = |of: u32| {
+        format!("<components><component objectid=\"{of}\"/><component objectid=\"{of}\"/></components>")
+    };
     let circle = object(1, &pair(2)) + &object(2, &pair(1));
     assert!(refused(&model(&circle, "<item objectid=\"1\"/>")).contains("inside itself"));
 

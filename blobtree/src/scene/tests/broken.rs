@@ -149,7 +149,9 @@ fn a_million_nodes_are_too_many_written_out_or_shared() {
 
     // Thirty doublings: a billion nodes from a screenful of text.
     let doubled: Vec<String> = (1..30)
-        .map(|i| format!(r#""{i}": {{"type": "sum", "children": [{{"use": "{0}"}}, {{"use": "{0}"}}]}}"#, i - 1))
+        .map(|i| {
+            format!(r#""{i}": {{"type": "sum", "children": [{{"use": "{0}"}}, {{"use": "{0}"}}]}}"#, i - 1)
+        })
         .collect();
     let text = format!(
         r#"{{"format": "trullo", "version": 1, "define": {{"0": {{"type": "point", "center": [0, 0, 0], "radius": 1}},

@@ -29,8 +29,14 @@ fn a_value_in_the_middle_of_a_file_is_found_by_line_column_and_node() {
 #[test]
 fn wrong_parameters_are_told_with_what_would_be_right() {
     let cases = [
-        (r#"{"type": "point", "center": [0, 0, 0], "radius": -5}"#, "`radius` is -5.0, not 0.001 to 100000 mm"),
-        (r#"{"type": "point", "center": [0, 0, 0], "radius": 1e39}"#, "`radius` is inf, not 0.001 to 100000 mm"),
+        (
+            r#"{"type": "point", "center": [0, 0, 0], "radius": -5}"#,
+            "`radius` is -5.0, not 0.001 to 100000 mm",
+        ),
+        (
+            r#"{"type": "point", "center": [0, 0, 0], "radius": 1e39}"#,
+            "`radius` is inf, not 0.001 to 100000 mm",
+        ),
         (r#"{"type": "point", "center": [0, 0, 0], "radius": null}"#, "`radius` is null, not a number"),
         (
             r#"{"type": "point", "center": [0, 0], "radius": 1}"#,
@@ -50,7 +56,10 @@ fn wrong_parameters_are_told_with_what_would_be_right() {
             "there is no field `sharpness` here, but children, type, name, color, muted, construction",
         ),
         (r#"{"type": "blend", "children": [], "sharpness": 0.5}"#, "`sharpness` is 0.5, not 1 to 64"),
-        (r#"{"type": "blend", "children": {}}"#, "`children` is an object, not a list of nodes, which may be empty"),
+        (
+            r#"{"type": "blend", "children": {}}"#,
+            "`children` is an object, not a list of nodes, which may be empty",
+        ),
         (r#"{"type": "blend"}"#, "`children` is missing: a list of nodes, which may be empty"),
         (r#"{"type": "pont"}"#, "node type `pont` is not known; did you mean `point`?"),
         (r#"{"type": "halfspace"}"#, "node type `halfspace` is not known; did you mean `half_space`?"),
@@ -81,7 +90,10 @@ fn wrong_parameters_are_told_with_what_would_be_right() {
         assert_eq!(about(root), format!("node /: {expected}"), "{root}");
     }
     let long = about(r#"{"type": "ballon"}"#);
-    assert!(long.starts_with("node /: node type `ballon` is not known; the known ones are point, segment"), "{long}");
+    assert!(
+        long.starts_with("node /: node type `ballon` is not known; the known ones are point, segment"),
+        "{long}"
+    );
 }
 
 #[test]
@@ -89,9 +101,15 @@ fn files_of_another_kind_or_version_are_told_so() {
     let union = r#"{"type": "union", "children": []}"#;
     let cases = [
         ("", "the file is empty; a scene begins with {\"format\": \"trullo\", \"version\": 1, \"root\": …"),
-        ("[]", "line 1, column 1: `the file` is a list of 0, not an object with `format`, `version` and `root`"),
+        (
+            "[]",
+            "line 1, column 1: `the file` is a list of 0, not an object with `format`, `version` and `root`",
+        ),
         ("{}", "line 1, column 1: `format` is missing: a scene file says \"format\": \"trullo\""),
-        (r#"{"format": "gltf"}"#, "line 1, column 12: not a scene: `format` is the text \"gltf\", not \"trullo\""),
+        (
+            r#"{"format": "gltf"}"#,
+            "line 1, column 12: not a scene: `format` is the text \"gltf\", not \"trullo\"",
+        ),
         (r#"{"format": "trullo"}"#, "line 1, column 1: `version` is missing: the newest is \"version\": 1"),
         (
             r#"{"format": "trullo", "version": 7, "later": []}"#,
@@ -105,7 +123,10 @@ fn files_of_another_kind_or_version_are_told_so() {
             r#"{"format": "trullo", "version": 1}"#,
             "line 1, column 1: `root` is missing: the tree, an object with `type`",
         ),
-        ("{\"format\":\n \"trullo\", \"format\": 1}", "line 2, column 19: not JSON: `format` is given twice in one object"),
+        (
+            "{\"format\":\n \"trullo\", \"format\": 1}",
+            "line 2, column 19: not JSON: `format` is given twice in one object",
+        ),
         ("{\"format\": \n NaN}", "line 2, column 2: not JSON: expected value"),
         ("{\"format\": \"ö\", 1e999]", "line 1, column 17: not JSON: key must be a string"),
         ("{\"a\": 1e999}", "line 1, column 11: not JSON: number out of range"),

@@ -5,7 +5,9 @@ use crate::build::{Build, point, union};
 use crate::node::{Node, NodeRef, Shape};
 use crate::primitive::Primitive;
 use crate::random::RandomTree;
-use crate::scene::{NoMeshes, Scene};
+use crate::scene::{MeshReference, MeshSource, NoMeshes, Scene};
+use glam::Vec3;
+use mesh::MeshDistance;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -104,4 +106,48 @@ fn a_byte_order_mark_and_any_white_space_are_welcome() {
     let text = format!("\u{feff}\r\n\t{}\r\n", file(r#"{"type": "union", "children": []}"#));
     assert!(read(&text).is_ok());
     assert!(Scene::read(text.as_bytes(), &mut NoMeshes).is_ok());
+}
+
+/// A box for every file name but one, and how often it was asked.
+struct Boxes {
+    asked: Vec<String>,
+}
+
+impl MeshSource for Boxes {
+    fn load(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+        self.asked.push(reference.file.clone());
+        if reference.file == "gone.stl" {
+            return Err("there is no such file".into());
+        }
+        let mesh = mesh::shapes::cuboid(Vec3::ZERO, Vec3::splat(10.0));
+        Ok(Arc::new(MeshDistance::new(&mesh).expect("a box is a fine mesh")))
+    }
+}
+
+#[test]
+fn each_mesh_file_is_asked_for_once_and_missing_ones_are_told() {
+    let node = |name: &str, falloff: f32| {
+        format!(
+            r#"{{"type": "mesh", "file": "{name}", "sha256": "{}", "falloff": {falloff}}}"#,
+            "0a".repeat(32)
+        )
+    };
+    let text = |last: &str| {
+        let nodes = [node("a.stl", 2.0), node("b.stl", 2.0), node("a.stl", 3.5), last.into()];
+        file(&format!(r#"{{"type": "union", "children": [{}]}}"#, nodes.join(", ")))
+    };
+    let mut boxes = Boxes { asked: vec![] };
+    let legal = text(&node("b.stl", 2.0));
+    let scene = Scene::from_bytes(legal.as_bytes(), &mut boxes).expect("legal");
+    assert_eq!(boxes.asked, ["a.stl", "b.stl"]);
+    let written = scene.to_text().expect("legal");
+    let back = Scene::from_bytes(written.as_bytes(), &mut boxes).expect("legal");
+    assert_eq!(back, scene);
+
+    let missing = text(&node("gone.stl", 2.0));
+    let error = Scene::from_bytes(missing.as_bytes(), &mut boxes).expect_err("it is gone").to_string();
+    assert!(error.ends_with("node /3: mesh `gone.stl`: there is no such file"), "{error}");
+    let bad_hash = file(r#"{"type": "mesh", "file": "a.stl", "sha256": "0A"}"#);
+    let error = Scene::from_bytes(bad_hash.as_bytes(), &mut boxes).expect_err("a short hash").to_string();
+    assert!(error.ends_with("node /: `sha256` is 0A, not 64 lower-case hexadecimal digits"), "{error}");
 }

@@ -1,6 +1,6 @@
 //! The values after a PLY header, whichever way they are encoded.
 
-use std::io::{self, BufRead, Read};
+use std::io::BufRead;
 
 use super::super::error::quoted;
 use super::super::text::{Lines, Words};
@@ -121,6 +121,11 @@ impl<R: BufRead> Data<R> {
 
     /// Steps over all of an element.
     pub(super) fn skip_element(&mut self, element: &Element) -> Result<(), ReadError> {
+        let has_lists = element.properties.iter().any(|property| matches!(property.kind, Kind::List { .. }));
+        if matches!(self, Self::Binary { .. }) && !has_lists {
+            // That this does not overflow was seen when the announced count was checked.
+            return self.skip_bytes(element.count * element.least_size(Encoding::LittleEndian));
+        }
         for _ in 0..element.count {
             for property in &element.properties {
                 self.skip(property.kind)?;
@@ -129,12 +134,17 @@ impl<R: BufRead> Data<R> {
         Ok(())
     }
 
-    fn skip_bytes(&mut self, count: u64) -> Result<(), ReadError> {
+    fn skip_bytes(&mut self, mut count: u64) -> Result<(), ReadError> {
         if let Self::Binary { reader, at, .. } = self {
-            let skipped = io::copy(&mut reader.by_ref().take(count), &mut io::sink())?;
-            *at += skipped;
-            if skipped < count {
-                return Err(self.cut_off());
+            while count > 0 {
+                let ready = reader.fill_buf()?.len() as u64;
+                let step = ready.min(count);
+                if step == 0 {
+                    return Err(self.cut_off());
+                }
+                reader.consume(step as usize);
+                *at += step;
+                count -= step;
             }
         }
         Ok(())
@@ -148,7 +158,13 @@ impl<R: BufRead> Data<R> {
             if at.saturating_add(size as u64) > *length {
                 return Err(self.cut_off());
             }
-            reader.read_exact(&mut bytes[..size])?;
+            match reader.fill_buf()?.get(..size) {
+                Some(ready) => {
+                    bytes[..size].copy_from_slice(ready);
+                    reader.consume(size);
+                }
+                None => reader.read_exact(&mut bytes[..size])?,
+            }
             if *big_endian {
                 bytes[..size].reverse();
             }

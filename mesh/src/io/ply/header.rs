@@ -85,7 +85,8 @@ impl Element {
 
     pub(super) fn lacks(&self, expected: &str) -> ReadError {
         let names: Vec<&str> = self.properties.iter().map(|property| property.name.as_str()).collect();
-        let found = format!("element {} with the properties {}", self.name, quoted(names.join(", ").as_bytes()));
+        let found =
+            format!("element {} with the properties {}", self.name, quoted(names.join(", ").as_bytes()));
         ReadError::Malformed { place: self.place.clone(), found, expected: expected.to_owned() }
     }
 
@@ -125,7 +126,9 @@ impl Header {
                     let encoding = encoding.ok_or_else(|| wrong(&lines, "a format line before it"))?;
                     return Ok((Self { encoding, elements }, lines));
                 }
-                [b"format", name, b"1.0"] if encoding.is_none() => encoding = Some(encoding_named(name, &lines)?),
+                [b"format", name, b"1.0"] if encoding.is_none() => {
+                    encoding = Some(encoding_named(name, &lines)?);
+                }
                 [b"element", name, count] => elements.push(element(name, count, &lines)?),
                 [b"property", ref kind @ .., name] => {
                     let property = property(kind, name, &lines)?;
@@ -171,6 +174,7 @@ fn property<R: BufRead>(kind: &[&[u8]], name: &[u8], lines: &Lines<R>) -> Result
             .map(|(count, item)| Kind::List { count, item }),
         _ => None,
     };
-    let kind = kind.ok_or_else(|| wrong(lines, "property TYPE NAME or property list COUNT_TYPE TYPE NAME"))?;
+    let kind =
+        kind.ok_or_else(|| wrong(lines, "property TYPE NAME or property list COUNT_TYPE TYPE NAME"))?;
     Ok(Property { name: String::from_utf8_lossy(name).into_owned(), kind })
 }

@@ -13,7 +13,7 @@ use self::data::Data;
 use self::header::{Element, Header, Kind, Scalar};
 use super::builder::{MeshBuilder, check};
 use super::number::{AXES, finite};
-use super::polygon::{Faces, MAX_CORNERS};
+use super::polygon::{Faces, check_corners};
 use super::{Format, Loaded, ReadError, ReadLimits, WriteError, count_for};
 use crate::Mesh;
 
@@ -84,14 +84,16 @@ fn read_faces(
             match property.kind {
                 Kind::List { count, item } if i == corner_list => {
                     let (length, place) = data.list_length(count, item)?;
-                    check(length, MAX_CORNERS, "corners of one face", || place.clone())?;
+                    check_corners(length, || place.clone())?;
                     corners.clear();
                     for _ in 0..length {
                         corners.push(corner(data, item, builder.vertices())?);
                     }
                     faces.add(builder, &corners, place)?;
                 }
-                Kind::Scalar(_) if i == corner_list => return Err(element.lacks("a list property vertex_indices")),
+                Kind::Scalar(_) if i == corner_list => {
+                    return Err(element.lacks("a list property vertex_indices"));
+                }
                 kind => data.skip(kind)?,
             }
         }

@@ -144,7 +144,8 @@ fn put(
 ) -> Result<(), ReadError> {
     // Passing over what adds nothing keeps the work in proportion to the meshes placed.
     let load = loads.get(&(reference.part, reference.object)).copied().flatten().unwrap_or_default();
-    let Some(object) = models[reference.part].objects.get(&reference.object).filter(|_| load.meshes > 0) else {
+    let Some(object) = models[reference.part].objects.get(&reference.object).filter(|_| load.meshes > 0)
+    else {
         return Ok(());
     };
     let transform = outer * reference.transform;
@@ -163,7 +164,8 @@ fn put_mesh(
     let first = builder.vertices() as u32;
     let unmoved = transform == DAffine3::IDENTITY;
     for &position in &object.mesh.positions {
-        let placed = if unmoved { position } else { transform.transform_point3(position.as_dvec3()).as_vec3() };
+        let placed =
+            if unmoved { position } else { transform.transform_point3(position.as_dvec3()).as_vec3() };
         let placed = super::super::number::finite(placed, &place)?;
         builder.vertex(placed, &place)?;
     }

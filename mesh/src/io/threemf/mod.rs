@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::io::{Read, Seek};
 
 use super::builder::{MeshBuilder, check};
-use super::{Attachments, Notice, Format, Loaded, Place, ReadError, ReadLimits};
+use super::{Attachments, Format, Loaded, Notice, Place, ReadError, ReadLimits};
 use model::{Model, Room};
 use package::Package;
 
@@ -26,7 +26,8 @@ const CORE: &str = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
 /// The relationship from the package to its model.
 const MODEL_RELATIONSHIP: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 /// The relationship that asks other programs to keep a part they do not know.
-const PRESERVE_RELATIONSHIP: &str = "http://schemas.openxmlformats.org/package/2006/relationships/mustpreserve";
+const PRESERVE_RELATIONSHIP: &str =
+    "http://schemas.openxmlformats.org/package/2006/relationships/mustpreserve";
 /// Where Trullo keeps the scene.
 const SCENE_PART: &str = "Metadata/scene.trullo";
 /// Where models are when no relationship says otherwise.
@@ -72,7 +73,8 @@ fn read_models<R: Read + Seek>(
     let mut room = Room::new(limits);
     while let Some(name) = wanted.get(models.len()) {
         let Some(part) = package.part(name)? else {
-            let missing = format!("the package has no part {name}, the model; it may be no 3MF file or cut off");
+            let missing =
+                format!("the package has no part {name}, the model; it may be no 3MF file or cut off");
             return Err(ReadError::Truncated { place: Place::File, missing });
         };
         let mut model = model::read(part, name, &mut room)?;

@@ -10,9 +10,9 @@ use super::super::builder::check;
 use super::super::error::quoted;
 use super::super::number::{AXES, coordinate};
 use super::super::{Place, ReadError, ReadLimits};
+use super::METADATA_NAMESPACE;
 use super::package::PartReader;
 use super::xml::{XmlPart, value_of};
-use super::METADATA_NAMESPACE;
 use crate::Mesh;
 
 /// Extensions a file may require: those that are read, and those that change only the looks.
@@ -248,7 +248,9 @@ impl ModelReader<'_> {
             (Some((prefix, rest)), Some(ours)) if prefix == ours => rest.to_owned(),
             _ => return,
         };
-        if self.model.metadata.len() < MAX_METADATA && self.model.metadata.iter().all(|(known, _)| *known != name) {
+        if self.model.metadata.len() < MAX_METADATA
+            && self.model.metadata.iter().all(|(known, _)| *known != name)
+        {
             self.model.metadata.push((name, value));
         }
     }
@@ -261,14 +263,12 @@ impl ModelReader<'_> {
         let mut namespaces = BTreeMap::new();
         let mut required = String::new();
         let mut unit = None;
-        self.attributes(element, byte, |key, value| {
-            match key {
-                "unit" => unit = Some(value),
-                "requiredextensions" => required = value,
-                _ => {
-                    if let Some(prefix) = key.strip_prefix("xmlns:") {
-                        namespaces.insert(prefix.to_owned(), value);
-                    }
+        self.attributes(element, byte, |key, value| match key {
+            "unit" => unit = Some(value),
+            "requiredextensions" => required = value,
+            _ => {
+                if let Some(prefix) = key.strip_prefix("xmlns:") {
+                    namespaces.insert(prefix.to_owned(), value);
                 }
             }
         })?;
@@ -280,7 +280,8 @@ impl ModelReader<'_> {
         for prefix in required.split_ascii_whitespace() {
             let namespace = namespaces.get(prefix).map_or(prefix, String::as_str);
             if !KNOWN_EXTENSIONS.contains(&namespace) {
-                let what = format!("the 3MF extension {}, which the file requires,", quoted(namespace.as_bytes()));
+                let what =
+                    format!("the 3MF extension {}, which the file requires,", quoted(namespace.as_bytes()));
                 let instead = "export it with plain meshes";
                 return Err(ReadError::Unsupported { place: self.model.place(byte), what, instead });
             }
@@ -313,7 +314,8 @@ impl ModelReader<'_> {
         check(self.room.vertices, self.room.limits.max_vertices, "vertices", || self.model.place(byte))?;
         let mut found = [None; 3];
         for attribute in element.attributes().with_checks(false) {
-            let attribute = attribute.map_err(|error| self.malformed(byte, quoted_error(&error), ATTRIBUTES))?;
+            let attribute =
+                attribute.map_err(|error| self.malformed(byte, quoted_error(&error), ATTRIBUTES))?;
             if let Some(axis) = ["x", "y", "z"].iter().position(|name| attribute.key.as_ref() == *name) {
                 let word = attribute.value.trim_ascii().as_bytes();
                 found[axis] = Some(self.length(word, AXES[axis], byte)?);
@@ -349,11 +351,16 @@ impl ModelReader<'_> {
         let vertices = self.object.mesh.positions.len();
         let mut found = [None; 3];
         for attribute in element.attributes().with_checks(false) {
-            let attribute = attribute.map_err(|error| self.malformed(byte, quoted_error(&error), ATTRIBUTES))?;
+            let attribute =
+                attribute.map_err(|error| self.malformed(byte, quoted_error(&error), ATTRIBUTES))?;
             if let Some(corner) = ["v1", "v2", "v3"].iter().position(|name| attribute.key.as_ref() == *name) {
                 let index = attribute.value.trim_ascii().parse::<i64>();
                 let index = index.map_err(|_| {
-                    self.malformed(byte, quoted(attribute.value.as_bytes()), "a vertex number, counted from 0")
+                    self.malformed(
+                        byte,
+                        quoted(attribute.value.as_bytes()),
+                        "a vertex number, counted from 0",
+                    )
                 })?;
                 let known = u32::try_from(index).ok().filter(|&index| (index as usize) < vertices);
                 let (place, vertices) = (|| self.model.place(byte), vertices as u64);
@@ -363,7 +370,13 @@ impl ModelReader<'_> {
         }
         match found {
             [Some(a), Some(b), Some(c)] => self.object.mesh.triangles.push([a, b, c]),
-            _ => return Err(self.malformed(byte, "a triangle without all of them".to_owned(), "v1, v2 and v3")),
+            _ => {
+                return Err(self.malformed(
+                    byte,
+                    "a triangle without all of them".to_owned(),
+                    "v1, v2 and v3",
+                ));
+            }
         }
         Ok(())
     }
@@ -398,10 +411,15 @@ impl ModelReader<'_> {
         if words.next().is_some() {
             return Err(wrong());
         }
-        let [x, y, z, offset] = [0, 3, 6, 9].map(|at| DVec3::new(numbers[at], numbers[at + 1], numbers[at + 2]));
+        let [x, y, z, offset] =
+            [0, 3, 6, 9].map(|at| DVec3::new(numbers[at], numbers[at + 1], numbers[at + 2]));
         let transform = DAffine3::from_cols(x, y, z, offset * self.model.unit.millimetres);
         if transform.matrix3.determinant() == 0.0 {
-            return Err(self.malformed(byte, quoted(text.as_bytes()), "a transform that does not flatten the object"));
+            return Err(self.malformed(
+                byte,
+                quoted(text.as_bytes()),
+                "a transform that does not flatten the object",
+            ));
         }
         Ok(transform)
     }
@@ -414,7 +432,12 @@ impl ModelReader<'_> {
         })
     }
 
-    fn attribute(&self, element: &BytesStart<'_>, byte: u64, name: &str) -> Result<Option<String>, ReadError> {
+    fn attribute(
+        &self,
+        element: &BytesStart<'_>,
+        byte: u64,
+        name: &str,
+    ) -> Result<Option<String>, ReadError> {
         let mut found = None;
         self.attributes(element, byte, |key, value| {
             if key == name {
@@ -431,7 +454,8 @@ impl ModelReader<'_> {
         mut take: impl FnMut(&str, String),
     ) -> Result<(), ReadError> {
         for attribute in element.attributes().with_checks(false) {
-            let attribute = attribute.map_err(|error| self.malformed(byte, quoted_error(&error), ATTRIBUTES))?;
+            let attribute =
+                attribute.map_err(|error| self.malformed(byte, quoted_error(&error), ATTRIBUTES))?;
             let wrong = || self.malformed(byte, quoted(attribute.value.as_bytes()), "known entities only");
             take(attribute.key.as_ref(), value_of(&attribute).ok_or_else(wrong)?);
         }

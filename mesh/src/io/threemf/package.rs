@@ -15,7 +15,7 @@ use super::{MODEL_RELATIONSHIP, PRESERVE_RELATIONSHIP, part_key};
 /// A package may unpack to this many times its own size …
 const MAX_RATIO: u64 = 100;
 /// … or to this many bytes, whichever is more.
-const ALWAYS_UNPACKED: u64 = 64 << 20;
+const ALWAYS_UNPACKED: u64 = 16 << 20;
 /// Most parts; the index of a zip file costs memory for each.
 const MAX_ENTRIES: u64 = 1 << 16;
 /// The end of a zip file where its index is announced, with the longest comment.
@@ -39,7 +39,8 @@ pub(super) struct Roots {
 impl<R: Read + Seek> Package<R> {
     pub(super) fn open(mut reader: R, length: u64, limits: &ReadLimits) -> Result<Self, ReadError> {
         check_index(&mut reader, length)?;
-        let archive = ZipArchive::new(BufReader::new(reader)).map_err(|error| zip_error(error, "the package"))?;
+        let archive =
+            ZipArchive::new(BufReader::new(reader)).map_err(|error| zip_error(error, "the package"))?;
         let mut names = BTreeMap::new();
         for at in 0..archive.len() {
             if let Some(Ok(name)) = archive.name_for_index(at) {
@@ -81,7 +82,9 @@ impl<R: Read + Seek> Package<R> {
         let mut xml = XmlPart::new(part, NAME);
         loop {
             match xml.next()?.0 {
-                Event::Start(element) | Event::Empty(element) if element.local_name().as_ref() == "Relationship" => {
+                Event::Start(element) | Event::Empty(element)
+                    if element.local_name().as_ref() == "Relationship" =>
+                {
                     let (mut kind, mut target) = (None, None);
                     for attribute in element.attributes().with_checks(false).flatten() {
                         let value = || super::xml::value_of(&attribute);
@@ -130,7 +133,12 @@ pub(super) fn part_error(error: io::Error, name: &str, byte: u64) -> ReadError {
     match error.kind() {
         io::ErrorKind::FileTooLarge => {
             let limit = error.to_string().parse().unwrap_or(ALWAYS_UNPACKED);
-            ReadError::TooLarge { place, what: "bytes or more in the unpacked package", found: limit + 1, limit }
+            ReadError::TooLarge {
+                place,
+                what: "bytes or more in the unpacked package",
+                found: limit + 1,
+                limit,
+            }
         }
         io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput | io::ErrorKind::UnexpectedEof => {
             let (found, expected) = (quoted(error.to_string().as_bytes()), "intact packed data".to_owned());
@@ -144,9 +152,15 @@ fn zip_error(error: ZipError, name: &str) -> ReadError {
     let place = Place::Part { name: name.to_owned(), byte: 0 };
     match error {
         ZipError::Io(error) => part_error(error, name, 0),
-        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) | ZipError::InvalidPassword => {
+        ZipError::UnsupportedArchive(_)
+        | ZipError::CompressionMethodNotSupported(_)
+        | ZipError::InvalidPassword => {
             let what = format!("this kind of zip file ({error})");
-            ReadError::Unsupported { place, what, instead: "3MF parts are stored or deflated, and not encrypted" }
+            ReadError::Unsupported {
+                place,
+                what,
+                instead: "3MF parts are stored or deflated, and not encrypted",
+            }
         }
         error => {
             let (found, expected) = (error.to_string(), "a zip package".to_owned());
@@ -161,7 +175,9 @@ fn check_index(reader: &mut (impl Read + Seek), length: u64) -> Result<(), ReadE
     reader.seek(SeekFrom::Start(start))?;
     let mut tail = Vec::new();
     reader.take(TAIL).read_to_end(&mut tail)?;
-    let find = |mark: &'static [u8]| tail.windows(4).enumerate().filter_map(move |(at, w)| (w == mark).then_some(at));
+    let find = |mark: &'static [u8]| {
+        tail.windows(4).enumerate().filter_map(move |(at, w)| (w == mark).then_some(at))
+    };
     let broken = |found: &str, expected: &str| ReadError::Malformed {
         place: Place::File,
         found: found.to_owned(),
@@ -171,11 +187,15 @@ fn check_index(reader: &mut (impl Read + Seek), length: u64) -> Result<(), ReadE
         return Err(broken("no zip package", "a 3MF file, which is a zip package"));
     }
     if find(b"PK\x05\x06").next().is_none() {
-        return Err(broken("a zip package without its index at the end", "a whole file; this one may be cut off"));
+        return Err(broken(
+            "a zip package without its index at the end",
+            "a whole file; this one may be cut off",
+        ));
     }
     // Only the 64-bit index can announce more entries than fit into memory; a real one is near the end.
     for at in find(b"PK\x06\x06") {
-        let count = tail.get(at + 32..at + 40).map(|b| u64::from_le_bytes(b.try_into().expect("eight bytes")));
+        let count =
+            tail.get(at + 32..at + 40).map(|b| u64::from_le_bytes(b.try_into().expect("eight bytes")));
         if let Some(found) = count.filter(|&count| count > MAX_ENTRIES) {
             let (place, what) = (Place::Byte(start + at as u64), "parts in the package");
             return Err(ReadError::TooLarge { place, what, found, limit: MAX_ENTRIES });

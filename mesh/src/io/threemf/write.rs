@@ -78,7 +78,8 @@ fn content_types(with_scene: bool) -> String {
 }
 
 fn relationships(with_scene: bool) -> String {
-    let scene = format!("<Relationship Target=\"/{SCENE_PART}\" Id=\"scene\" Type=\"{PRESERVE_RELATIONSHIP}\"/>");
+    let scene =
+        format!("<Relationship Target=\"/{SCENE_PART}\" Id=\"scene\" Type=\"{PRESERVE_RELATIONSHIP}\"/>");
     format!(
         "{}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\
          <Relationship Target=\"/{MODEL_PART}\" Id=\"model\" Type=\"{MODEL_RELATIONSHIP}\"/>{}</Relationships>",
@@ -96,7 +97,9 @@ fn metadata_xml(attachments: &Attachments) -> Result<String, WriteError> {
     for (name, value) in title.chain(further) {
         let refused = |problem| WriteError::Metadata { name: name.to_owned(), problem };
         let is_first = |c: char| c.is_ascii_alphabetic() || c == '_';
-        if !name.starts_with(is_first) || !name.chars().all(|c| is_first(c) || c.is_ascii_digit() || "-.".contains(c)) {
+        if !name.starts_with(is_first)
+            || !name.chars().all(|c| is_first(c) || c.is_ascii_digit() || "-.".contains(c))
+        {
             return Err(refused("a name starts with a letter and has letters, digits, `_`, `-` and `.`"));
         }
         if name == "Application" || names.contains(&name) {

@@ -30,7 +30,8 @@ impl<'a> XmlPart<'a> {
     /// The next event, and the byte where it ends. Errors: XML that is not well-formed, too deep, with a document type, or cut off.
     pub(super) fn next(&mut self) -> Result<(Event<'_>, u64), ReadError> {
         self.buffer.clear();
-        let place = |reader: &Reader<_>| Place::Part { name: self.name.clone(), byte: reader.error_position() };
+        let place =
+            |reader: &Reader<_>| Place::Part { name: self.name.clone(), byte: reader.error_position() };
         let event = match self.reader.read_event_into(&mut self.buffer) {
             Ok(event) => event,
             Err(quick_xml::Error::Io(error)) => {

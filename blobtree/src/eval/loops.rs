@@ -1,0 +1,159 @@
+//! The loops over rows of places, as jobs that are compiled once more for wide registers.
+//!
+//! A job's `call` is inlined into code for the processor at hand, which is chosen at run time; a closure
+//! handed to [`pulp::Arch::dispatch`] would stay behind in baseline code. Results do not depend on the choice:
+//! the operations are the same, and none are fused.
+
+use super::places::{Places, ROW, Row};
+use super::scratch::Slopes;
+use crate::falloff::{cube, larger};
+use crate::leaf::Kernel;
+use crate::scalar::Slope;
+use pulp::NullaryFnOnce;
+
+/// The value of a leaf at every place.
+pub(super) struct KernelValues<'a, K, P> {
+    pub kernel: &'a K,
+    pub places: &'a P,
+    pub out: &'a mut [[f32; ROW]],
+}
+
+impl<K: Kernel, P: Places> NullaryFnOnce for KernelValues<'_, K, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (r, out) in self.out.iter_mut().enumerate() {
+            let row = self.places.row(r);
+            for (i, value) in out.iter_mut().enumerate() {
+                *value = self.kernel.at(row.place(i)).value;
+            }
+        }
+    }
+}
+
+/// Value and gradient of a leaf at every place.
+pub(super) struct KernelSlopes<'a, K, P> {
+    pub kernel: &'a K,
+    pub places: &'a P,
+    pub out: &'a mut Slopes,
+}
+
+impl<K: Kernel, P: Places> NullaryFnOnce for KernelSlopes<'_, K, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let [gx, gy, gz] = &mut self.out.gradient;
+        let rows = self.out.value.iter_mut().zip(gx).zip(gy).zip(gz);
+        for (r, (((value, gx), gy), gz)) in rows.enumerate() {
+            let row = self.places.row(r);
+            for i in 0..ROW {
+                let slope = self.kernel.at(row.place(i));
+                value[i] = slope.value;
+                [gx[i], gy[i], gz[i]] = slope.gradient;
+            }
+        }
+    }
+}
+
+/// `Σ (1 − x[i] − y[j] − z[k])₊³` over tables of x, y and z, for a brick.
+pub(super) struct SumTables<'a> {
+    pub tables: &'a [[[f32; ROW]; 3]],
+    pub out: &'a mut [[f32; ROW]],
+}
+
+impl NullaryFnOnce for SumTables<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (r, row) in self.out.iter_mut().enumerate() {
+            let (j, k) = (r % ROW, r / ROW);
+            let mut total = [0.0f32; ROW];
+            for [x, y, z] in self.tables {
+                let rest = 1.0 - y[j] - z[k];
+                if rest > 0.0 {
+                    for i in 0..ROW {
+                        total[i] += cube(larger(rest - x[i], 0.0));
+                    }
+                }
+            }
+            *row = total;
+        }
+    }
+}
+
+/// `out = f(out)`.
+pub(super) struct Each<'a, F> {
+    pub out: &'a mut [[f32; ROW]],
+    pub f: F,
+}
+
+impl<F: Fn(f32) -> f32> NullaryFnOnce for Each<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for value in self.out.as_flattened_mut() {
+            *value = (self.f)(*value);
+        }
+    }
+}
+
+/// `out = f(out, operand)`.
+pub(super) struct Zip<'a, F> {
+    pub out: &'a mut [[f32; ROW]],
+    pub operand: &'a [[f32; ROW]],
+    pub f: F,
+}
+
+impl<F: Fn(f32, f32) -> f32> NullaryFnOnce for Zip<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (value, other) in self.out.as_flattened_mut().iter_mut().zip(self.operand.as_flattened()) {
+            *value = (self.f)(*value, *other);
+        }
+    }
+}
+
+/// `out = f(out)`, with gradients.
+pub(super) struct EachSlope<'a, F> {
+    pub out: &'a mut Slopes,
+    pub f: F,
+}
+
+impl<F: Fn(Slope<f32>) -> Slope<f32>> NullaryFnOnce for EachSlope<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for r in 0..self.out.value.len() {
+            for i in 0..ROW {
+                self.out.set(r, i, (self.f)(self.out.get(r, i)));
+            }
+        }
+    }
+}
+
+/// `out = f(out, operand)`, with gradients.
+pub(super) struct ZipSlopes<'a, F> {
+    pub out: &'a mut Slopes,
+    pub operand: &'a Slopes,
+    pub f: F,
+}
+
+impl<F: Fn(Slope<f32>, Slope<f32>) -> Slope<f32>> NullaryFnOnce for ZipSlopes<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for r in 0..self.out.value.len() {
+            for i in 0..ROW {
+                self.out.set(r, i, (self.f)(self.out.get(r, i), self.operand.get(r, i)));
+            }
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! What caches promise: accuracy, creases, and work saved.
+
+use blobtree::build::{Build, cuboid, cylinder, point, sum, union};
+use blobtree::random::RandomTree;
+use blobtree::{
+    Aabb, BRICK_SAMPLES, Brick, CachePolicy, CacheStore, Field, ISO, Node, NodeRef, Tree, changed_region,
+};
+use fastrand::Rng;
+use glam::Vec3;
+
+const EVERYWHERE: CachePolicy = CachePolicy { least_cost: 2, cells: 128 };
+
+fn point_in(rng: &mut Rng, region: &Aabb) -> Vec3 {
+    region.min + region.size() * Vec3::new(rng.f32(), rng.f32(), rng.f32())
+}
+
+/// Fills every brick that the surface may pass, as meshing does.
+fn sweep(tree: &Tree, cells: f32) {
+    let support = tree.support();
+    let spacing = support.size().max_element() / cells;
+    let [low, high] = [support.min, support.max].map(|p| (p / (15.0 * spacing)).floor().as_ivec3());
+    let mut values = [0.0; BRICK_SAMPLES];
+    let mut sampler = tree.sampler();
+    for z in low.z..=high.z {
+        for y in low.y..=high.y {
+            for x in low.x..=high.x {
+                let brick = Brick { origin: [x, y, z].map(|i| 15 * i), spacing };
+                if sampler.enter(brick.region()).may_cross(ISO) {
+                    sampler.fill(&brick, &mut values);
+                }
+                sampler.leave();
+            }
+        }
+    }
+}
+
+/// 1,000 balls in 40 trees of 25.
+fn forest() -> Vec<Node> {
+    let mut rng = Rng::with_seed(7);
+    let tree = |i: usize, rng: &mut Rng| {
+        let (x, y) = ((i % 8) as f32 * 24.0, (i / 8) as f32 * 24.0);
+        sum((0..25).map(|_| {
+            let at = [x + 14.0 * rng.f32(), y + 14.0 * rng.f32(), 4.0 + 14.0 * rng.f32()];
+            point(at, 1.5 + 1.5 * rng.f32())
+        }))
+        .named(format!("tree {i}"))
+    };
+    (0..40).map(|i| tree(i, &mut rng)).collect()
+}
+
+#[test]
+fn cached_fields_stay_within_a_hundredth_of_the_exact_one() {
+    for seed in 0..60 {
+        let mut random = RandomTree::new(seed);
+        random.depth = 4;
+        let root = random.tree();
+        let (exact, cached) = (Tree::new(&root), CacheStore::new(EVERYWHERE).tree(&root));
+        let arena = exact.support().intersection(&Aabb::around(Vec3::ZERO, Vec3::splat(150.0)));
+        if arena.is_empty() {
+            continue;
+        }
+        let mut rng = Rng::with_seed(seed);
+        let points: Vec<Vec3> = (0..3000).map(|_| point_in(&mut rng, &arena)).collect();
+        let (mut a, mut b) = (vec![0.0; points.len()], vec![0.0; points.len()]);
+        exact.sampler().values(&points, &mut a);
+        cached.sampler().values(&points, &mut b);
+        for ((p, a), b) in points.iter().zip(&a).zip(&b) {
+            assert!((a - b).abs() < 0.01, "seed {seed} at {p}: {b} instead of {a}");
+        }
+    }
+}
+
+#[test]
+fn sharp_edges_are_exact_through_caches() {
+    let block = || cuboid([0.0, 0.0, 10.0], [40.0, 30.0, 20.0]);
+    let bore = || cylinder([5.0, 0.0, -1.0], [5.0, 0.0, 30.0], 6.0);
+    let root: NodeRef = union([block().subtract(bore()), point([-20.0, 0.0, 20.0], 7.0)]).into();
+    let (exact, cached) = (Tree::new(&root), CacheStore::new(EVERYWHERE).tree(&root));
+    let on_edges = (0..200).map(|i| {
+        let angle = i as f32 / 200.0 * std::f32::consts::TAU;
+        Vec3::new(5.0 + 6.0 * angle.cos(), 6.0 * angle.sin(), 20.0)
+    });
+    for p in on_edges {
+        let spacing = 0.2;
+        let origin = (p / spacing).round().as_ivec3() - 8;
+        let brick = Brick { origin: origin.to_array(), spacing };
+        let (mut a, mut b) = ([0.0; BRICK_SAMPLES], [0.0; BRICK_SAMPLES]);
+        for (tree, values) in [(&exact, &mut a), (&cached, &mut b)] {
+            let mut sampler = tree.sampler();
+            sampler.enter(brick.region());
+            sampler.fill(&brick, values);
+        }
+        assert!(a == b, "near the rim at {p}");
+    }
+}
+
+#[test]
+fn after_moving_one_of_a_thousand_blobs_caches_save_nine_tenths_of_the_work() {
+    let trees: Vec<NodeRef> = forest().into_iter().map(NodeRef::from).collect();
+    let before: NodeRef = union(trees.iter().cloned()).into();
+    let mut store = CacheStore::new(EVERYWHERE);
+    sweep(&store.tree(&before), 128.0);
+
+    let mut balls: Vec<NodeRef> = trees[17].children().to_vec();
+    balls[3] = NodeRef::from(Node::clone(&balls[3]).translate([1.0, 0.5, 0.0]));
+    let mut moved = trees.clone();
+    moved[17] = sum(balls).named("tree 17").into();
+    let after: NodeRef = union(moved).into();
+
+    let uncached = Tree::new(&after);
+    sweep(&uncached, 128.0);
+    let filled_before = store.evaluations();
+    let cached = store.tree(&after);
+    sweep(&cached, 128.0);
+    let work = cached.evaluations() + store.evaluations().saturating_sub(filled_before);
+    let saved = uncached.evaluations() as f64 / work.max(1) as f64;
+    println!(
+        "primitive evaluations: {} without caches, {work} with: {saved:.1} times fewer",
+        uncached.evaluations()
+    );
+    assert!(saved >= 10.0, "{saved:.1}");
+
+    // Undo: the very same node, and not one evaluation more.
+    let filled = store.evaluations();
+    let undone = store.tree(&before);
+    sweep(&undone, 128.0);
+    assert!(store.evaluations() <= filled, "an undone state must find its caches warm");
+}
+
+#[test]
+fn edits_are_not_felt_outside_the_changed_region() {
+    for seed in 0..300 {
+        let mut random = RandomTree::new(seed);
+        random.depth = 4;
+        let old = random.tree();
+        let Some(path) = some_leaf(&old, seed) else { continue };
+        let new = with_leaf(&old, &path, random.leaf());
+        let changed = changed_region(&old, &new);
+        let (a, b) = (Tree::new(&old), Tree::new(&new));
+        let mut rng = Rng::with_seed(seed);
+        for _ in 0..300 {
+            let p = point_in(&mut rng, &Aabb::around(Vec3::ZERO, Vec3::splat(120.0)));
+            assert!(changed.contains(p) || a.value(p) == b.value(p), "seed {seed} at {p}: {changed:?}");
+        }
+    }
+}
+
+fn some_leaf(root: &NodeRef, seed: u64) -> Option<Vec<usize>> {
+    let mut rng = Rng::with_seed(seed);
+    let (mut node, mut path) = (root, Vec::new());
+    while !node.children().is_empty() {
+        path.push(rng.usize(..node.children().len()));
+        node = &node.children()[*path.last()?];
+    }
+    (!path.is_empty()).then_some(path)
+}
+
+fn with_leaf(node: &NodeRef, path: &[usize], leaf: Node) -> NodeRef {
+    let Some((first, rest)) = path.split_first() else {
+        return leaf.into();
+    };
+    let child = with_leaf(&node.children()[*first], rest, leaf);
+    let mut copy = Node::clone(node);
+    match &mut copy.shape {
+        blobtree::Shape::Operator(_, children) => children[*first] = child,
+        blobtree::Shape::Warp(_, only) => *only = child,
+        blobtree::Shape::Primitive(_) => unreachable!("paths lead through inner nodes"),
+    }
+    copy.into()
+}
