@@ -39,15 +39,13 @@ pub(crate) struct BrickSurface {
 }
 
 /// A feature further from its cell than is safe.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Bold {
     /// Number of the vertex.
     pub number: u16,
-    /// What it would be, at the first place.
-    pub vertex: Vertex,
-    /// Where it could be, best first.
-    pub places: [Vec3; 3],
-    /// How far it leaves its cell, mm.
+    /// What it could be, best first.
+    pub places: Vec<Vertex>,
+    /// How far the best one is outside the cell, mm.
     pub leap: f32,
     /// Its cell's lattice index.
     pub index: [i32; 3],

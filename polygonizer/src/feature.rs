@@ -37,13 +37,19 @@ const CLOSE: f32 = 0.2;
 const STILL_TURNS: f32 = 0.4;
 
 /// How far from the surface a feature vertex may be, in cells.
-const ON_SURFACE: f32 = 0.005;
+const ON_SURFACE: f32 = 0.008;
 
 /// How far from the surface a first guess may be, in cells, if other guesses are to be ignored.
 const NEAR_SURFACE: f32 = 0.05;
 
+/// How far outside its box a feature may be, in cells, to be moved to the box instead of left out.
+const SLACK: f32 = 0.006;
+
 /// Rounds of looking at the faces close to the feature.
 const ROUNDS: usize = 2;
+
+/// Most features outside its safe box that are tried for a vertex.
+const MAX_PLACES: usize = 3;
 
 /// Rounds of the search for the end of an edge.
 const WALK_ROUNDS: usize = 5;
@@ -125,8 +131,13 @@ impl FeatureScratch {
                 Some(found) if !candidate.bold => {
                     out.vertices[candidate.site as usize] = finder.vertex(&candidate, found);
                 }
-                Some(found) if candidate.bold && finder.may_be_bold(&candidate, &found) => {
-                    out.bold.push(finder.bold(&candidate, found));
+                Some(found) => {
+                    if let Some((place, leap)) = finder.bold_place(&candidate, found) {
+                        match out.bold.last_mut() {
+                            Some(last) if u32::from(last.number) == candidate.site => last.places.push(place),
+                            _ => out.bold.push(finder.bold(&candidate, place, leap)),
+                        }
+                    }
                 }
                 None if !candidate.bold => out.smooth.push(candidate.site),
                 _ => {}
@@ -187,45 +198,10 @@ impl Finder<'_> {
     /// Guesses for all candidates, then for those that have no good one in their safe boxes in bold ones.
     fn guess_and_add_bold(&mut self) {
         let safe = self.scratch.candidates.len();
-        self.guess(0);
+        self.scratch.guesses.clear();
         for number in 0..safe {
             let candidate = self.scratch.candidates[number];
-            let good = candidate.found.filter(|f| f.off <= NEAR_SURFACE * self.spacing);
-            if good.is_none_or(|good| good.is_part) {
-                let allowed = self.grid.bold_box(self.sites[candidate.site as usize].cell);
-                let has_edge = good.is_some();
-                let bold = Candidate { allowed, bold: true, has_edge, found: None, ..candidate };
-                self.scratch.candidates.push(bold);
-            }
-        }
-        self.guess(safe);
-    }
-
-    /// Meets the crossings' planes. Where three or more faces meet elsewhere, their pairs are tried as well:
-    /// their corner may lie in another cell while one of their edges passes this one.
-    fn guess(&mut self, first: usize) {
-        self.scratch.guesses.clear();
-        for number in first..self.scratch.candidates.len() {
-            let candidate = self.scratch.candidates[number];
-            let planes = &self.scratch.planes[candidate.planes[0]..candidate.planes[1]];
-            let whole = meet(planes);
-            let mut new: Vec<Guess> =
-                whole.and_then(|m| Guess::new(number, m, &candidate.allowed, turn(planes))).into_iter().collect();
-            if whole.is_none_or(|m| m.rank == 3) {
-                let faces = faces_of(planes);
-                for (i, &a) in faces.iter().enumerate() {
-                    new.extend(faces[i + 1..].iter().filter_map(|&b| {
-                        let meeting = meet(&[a, b]).filter(|m| m.rank == 2)?;
-                        let turn = a.normal.dot(b.normal);
-                        let guess = Guess::new(number, meeting, &candidate.allowed, turn)?;
-                        Some(Guess { is_part: true, ..guess })
-                    }));
-                }
-            }
-            if candidate.bold {
-                new.retain(|guess| self.may_be_bold(&candidate, guess));
-            }
-            self.scratch.guesses.extend(new);
+            self.guess(number, &candidate);
         }
         self.measure_guesses();
         for guess in &self.scratch.guesses {
@@ -235,12 +211,83 @@ impl Finder<'_> {
                 *best = Some(*guess);
             }
         }
+        self.scratch.guesses.clear();
+        for number in 0..safe {
+            let candidate = self.scratch.candidates[number];
+            let good = candidate.found.filter(|f| f.off <= NEAR_SURFACE * self.spacing);
+            if good.is_none_or(|good| good.is_part) {
+                let allowed = self.grid.bold_box(self.sites[candidate.site as usize].cell);
+                let has_edge = good.is_some();
+                let bold = Candidate { allowed, bold: true, has_edge, found: None, ..candidate };
+                self.guess(number, &bold);
+                let guesses = std::mem::take(&mut self.scratch.guesses);
+                let ranked = self.bold_guesses(&bold, guesses);
+                let found = ranked.into_iter().take(MAX_PLACES).map(|g| Candidate { found: Some(g), ..bold });
+                self.scratch.candidates.extend(found);
+            }
+        }
     }
 
-    /// Whether a feature outside a candidate's safe box is its to mark: a corner only if no other cell sees
-    /// it, an edge unless one passes the safe box.
-    fn may_be_bold(&mut self, candidate: &Candidate, guess: &Guess) -> bool {
-        if guess.rank == 3 { self.is_unseen(candidate, guess.point) } else { !candidate.has_edge }
+    /// Meets the crossings' planes. Where three or more faces meet elsewhere, their pairs are tried as well:
+    /// their corner may lie in another cell while one of their edges passes this one.
+    fn guess(&mut self, number: usize, candidate: &Candidate) {
+        let planes = &self.scratch.planes[candidate.planes[0]..candidate.planes[1]];
+        let whole = meet(planes);
+        let guesses = &mut self.scratch.guesses;
+        guesses.extend(whole.and_then(|m| Guess::new(number, m, &candidate.allowed, turn(planes))));
+        if whole.is_none_or(|m| m.rank == 3) {
+            let faces = faces_of(planes);
+            for (i, &a) in faces.iter().enumerate() {
+                guesses.extend(faces[i + 1..].iter().filter_map(|&b| {
+                    let meeting = meet(&[a, b]).filter(|m| m.rank == 2)?;
+                    let turn = a.normal.dot(b.normal);
+                    let guess = Guess::new(number, meeting, &candidate.allowed, turn)?;
+                    Some(Guess { is_part: true, ..guess })
+                }));
+            }
+        }
+    }
+
+    /// Those of a candidate's guesses outside its safe box that are its to mark, best first: what lies in cells
+    /// that the surface does not seem to pass, corners before edges; other edges only if none passes its safe box.
+    fn bold_guesses(&mut self, candidate: &Candidate, guesses: Vec<Guess>) -> Vec<Guess> {
+        let own = self.grid.own_box(self.sites[candidate.site as usize].cell);
+        let mut ranked = Vec::new();
+        for guess in guesses {
+            let leap = |g: &Guess| g.point.distance_squared(g.point.clamp(own.min, own.max));
+            if let Some(unseen) = self.move_out_of_sight(candidate, guess) {
+                ranked.push((3 - unseen.rank, leap(&unseen), unseen));
+            } else if guess.rank == 2 && !candidate.has_edge {
+                ranked.push((2, leap(&guess), guess));
+            }
+        }
+        ranked.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        ranked.into_iter().map(|(.., guess)| guess).collect()
+    }
+
+    /// The guess moved, if it is an edge along itself, to the nearest place in an unseen cell; `None` if there is
+    /// none.
+    fn move_out_of_sight(&mut self, candidate: &Candidate, guess: Guess) -> Option<Guess> {
+        if self.is_unseen(candidate, guess.point) {
+            return Some(guess);
+        }
+        if guess.rank == 3 {
+            return None;
+        }
+        let own = self.grid.own_box(self.sites[candidate.site as usize].cell);
+        let mut places: Vec<f32> = (0..27)
+            .filter_map(|n| {
+                let step = Vec3::new((n % 3) as f32, (n / 3 % 3) as f32, (n / 9) as f32) - 1.0;
+                let shift = step * self.spacing;
+                let cell = Aabb { min: own.min + shift, max: own.max + shift };
+                let [low, high] = clip(guess.point, guess.free, &cell)?;
+                Some(0.0_f32.clamp(low, high))
+            })
+            .collect();
+        places.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+        let points = places.into_iter().map(|t| candidate.clamp(guess.point + guess.free * t));
+        let point = points.into_iter().find(|&point| self.is_unseen(candidate, point))?;
+        Some(Guess { point, ..guess })
     }
 
     /// Whether `point` lies in a cell whose corners are all on one side of the surface.
@@ -269,15 +316,23 @@ impl Finder<'_> {
         }
     }
 
-    fn bold(&self, candidate: &Candidate, found: Guess) -> Bold {
+    /// What a bold candidate has found, and how far outside its cell, if it is its to mark.
+    fn bold_place(&mut self, candidate: &Candidate, found: Guess) -> Option<(Vertex, f32)> {
+        let unseen = self.is_unseen(candidate, found.point);
+        if !unseen && (candidate.has_edge || found.rank == 3) {
+            return None;
+        }
+        let own = self.grid.own_box(self.sites[candidate.site as usize].cell);
+        let leap = found.point.distance(found.point.clamp(own.min, own.max));
+        Some((self.vertex(candidate, found), leap))
+    }
+
+    fn bold(&self, candidate: &Candidate, place: Vertex, leap: f32) -> Bold {
         let cell = self.sites[candidate.site as usize].cell;
-        let own = self.grid.own_box(cell);
-        let near = if found.rank == 2 { found.nearest_to(&own, &candidate.allowed) } else { found.point };
         Bold {
             number: candidate.site as u16,
-            vertex: self.vertex(candidate, found),
-            places: [found.point, near, found.point.midpoint(near)],
-            leap: found.point.distance(found.point.clamp(own.min, own.max)),
+            places: vec![place],
+            leap,
             index: std::array::from_fn(|a| self.grid.brick.origin[a] + i32::from(cell[a])),
         }
     }
@@ -325,7 +380,10 @@ impl Finder<'_> {
                 continue;
             }
             match meet(near).and_then(|m| Guess::new(number, m, &candidate.allowed, turn)) {
-                Some(guess) => guesses.push(guess),
+                Some(mut guess) => {
+                    guess.keep_along_edge(found.point, &candidate.allowed);
+                    guesses.push(guess);
+                }
                 _ => candidate.settled = true,
             }
         }
@@ -359,7 +417,7 @@ impl Finder<'_> {
             let samples = self.batch.sample(self.sampler);
             for (walk, sample) in walks.iter_mut().zip(samples) {
                 let Candidate { planes: [first, end], .. } = self.scratch.candidates[walk.candidate];
-                walk.take(sample, &self.scratch.planes[first..end], on_surface);
+                walk.take(sample, &self.scratch.planes[first..end]);
             }
             // Whoever is on a known face at the far end already has nothing to find.
             walks.retain(|walk| walk.corner.is_some());
@@ -367,7 +425,10 @@ impl Finder<'_> {
         self.scratch.guesses.clear();
         for walk in walks {
             let point = walk.corner.map(|t| walk.found.point + walk.found.free * t);
-            if let Some(point) = point.filter(|&p| self.scratch.candidates[walk.candidate].allowed.contains(p)) {
+            let candidate = &self.scratch.candidates[walk.candidate];
+            let reached = point.map(|p| (p, candidate.clamp(p)));
+            let slack = SLACK * self.spacing;
+            if let Some((_, point)) = reached.filter(|(p, reached)| p.distance(*reached) <= slack) {
                 self.scratch.guesses.push(Guess { candidate: walk.candidate, point, rank: 3, ..walk.found });
             }
         }
@@ -392,12 +453,11 @@ struct Walk {
 }
 
 impl Walk {
-    fn take(&mut self, sample: &Sample, known: &[Plane], on_surface: f32) {
+    fn take(&mut self, sample: &Sample, known: &[Plane]) {
         let normal = outward(sample);
-        let off = newton_step(sample).map_or(0.0, Vec3::length);
         let slope = sample.gradient.dot(self.found.free);
         let is_new = known.iter().all(|p| p.normal.dot(normal) < 0.9) && normal.dot(self.found.free).abs() > 0.1;
-        if is_new && (off > on_surface || self.corner.is_some()) {
+        if is_new {
             self.beyond = self.t;
             let corner = self.t + (ISO - sample.value) / slope;
             self.corner = Some(corner);
@@ -425,7 +485,10 @@ impl Guess {
         if rank < 2 {
             return None;
         }
-        if !allowed.contains(point) {
+        let slack = SLACK * allowed.size().min_element();
+        if point.distance(point.clamp(allowed.min, allowed.max)) <= slack {
+            point = point.clamp(allowed.min, allowed.max);
+        } else {
             if rank == 3 {
                 return None;
             }
@@ -437,17 +500,14 @@ impl Guess {
 }
 
 impl Guess {
-    /// The point of an edge that is nearest to `target`.
-    fn nearest_to(&self, target: &Aabb, allowed: &Aabb) -> Vec3 {
-        let Some([mut low, mut high]) = clip(self.point, self.free, allowed) else { return self.point };
-        let at = |t: f32| self.point + self.free * t;
-        let distance = |t: f32| at(t).distance_squared(at(t).clamp(target.min, target.max));
-        // The distance to a box is convex along a line.
-        for _ in 0..24 {
-            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-            if distance(a) <= distance(b) { high = b } else { low = a }
+    /// Moves an edge's point along the edge to where that is nearest to `old`.
+    fn keep_along_edge(&mut self, old: Vec3, allowed: &Aabb) {
+        let along = (old - self.point).dot(self.free);
+        let reach = clip(self.point, self.free, allowed).filter(|_| self.rank == 2);
+        if let Some([low, high]) = reach {
+            let point = self.point + self.free * along.clamp(low, high);
+            self.point = point.clamp(allowed.min, allowed.max);
         }
-        at(low.midpoint(high)).clamp(allowed.min, allowed.max)
     }
 }
 

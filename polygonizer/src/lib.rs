@@ -13,6 +13,7 @@ mod progress;
 mod progressive;
 mod qef;
 mod ring;
+mod settle;
 mod stitch;
 mod surface;
 mod workers;

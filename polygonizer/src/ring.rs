@@ -76,32 +76,28 @@ pub(crate) fn ring_around(
 /// four are in their quadrants with a margin of a 256th of a cell, the better one always leaves more.
 const LEAST_AREA: f32 = 1e-6;
 
-/// The smaller area of the two triangles that each diagonal leaves, in squared cells as seen along the edge:
-/// first for that from 0 to 2. `start_inside` says whether the edge leaves the solid in its own direction.
-pub(crate) fn least_areas(positions: [Vec3; 4], axis: usize, start_inside: bool, spacing: f32) -> [f32; 2] {
+/// How much more than [`LEAST_AREA`] the smaller triangle has that each diagonal leaves, in squared cells as
+/// seen along the edge: first for that from 0 to 2. The ring is counter-clockwise seen from outside, and
+/// `start_inside` says whether outside is where the edge leads.
+pub(crate) fn spare_areas(positions: [Vec3; 4], axis: usize, start_inside: bool, spacing: f32) -> [f32; 2] {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let seen = positions.map(|p| {
-        let from_first = (p - positions[0]) / spacing;
-        Vec2::new(from_first[(axis + 1) % 3], from_first[(axis + 2) % 3])
+        let from_first = p - positions[0];
+        Vec2::new(from_first[u], from_first[v])
     });
-    let area = |a: usize, b: usize, c: usize| {
-        let twice = (seen[b] - seen[a]).perp_dot(seen[c] - seen[a]);
-        0.5 * if start_inside { twice } else { -twice }
-    };
-    [area(0, 1, 2).min(area(0, 2, 3)), area(1, 2, 3).min(area(1, 3, 0))]
-}
-
-/// Whether a quadrilateral has a diagonal that leaves no triangle turned over or flat.
-pub(crate) fn can_be_cut(areas: [f32; 2]) -> bool {
-    areas[0] > LEAST_AREA || areas[1] > LEAST_AREA
+    let side = if start_inside { 0.5 } else { -0.5 };
+    let area = |a: usize, b: usize, c: usize| side * (seen[b] - seen[a]).perp_dot(seen[c] - seen[a]);
+    let least = LEAST_AREA * spacing * spacing;
+    [area(0, 1, 2).min(area(0, 2, 3)) - least, area(1, 2, 3).min(area(1, 3, 0)) - least]
 }
 
 /// Whether the diagonal from 1 to 3 is better than that from 0 to 2.
 ///
 /// First, no triangle may be turned over or flat; then sharp edges are joined, from corner to corner if
 /// possible; then the shorter diagonal is taken.
-pub(crate) fn prefers_second(vertices: [&Vertex; 4], areas: [f32; 2]) -> bool {
-    if areas[0] <= LEAST_AREA || areas[1] <= LEAST_AREA {
-        return areas[1] > areas[0];
+pub(crate) fn prefers_second(vertices: [&Vertex; 4], spare: [f32; 2]) -> bool {
+    if spare[0] <= 0.0 || spare[1] <= 0.0 {
+        return spare[1] > spare[0];
     }
     let sharpness = |a: usize, b: usize| {
         let (a, b) = (vertices[a].kind, vertices[b].kind);

@@ -10,11 +10,12 @@ use glam::Vec3;
 use mesh::Mesh;
 use rayon::prelude::*;
 
-use crate::brick_surface::{BrickSurface, Worker};
+use crate::brick_surface::{Bold, BrickSurface, Worker};
 use crate::lattice::{BRICKS_PER_BLOCK, BrickKey, BrickRange, Lattice};
 use crate::place::{Vertex, VertexKind};
 use crate::ring::{Around, OWN, VertexRef};
-use crate::stitch::{settle, stitch};
+use crate::settle::{fitting_alone, settle};
+use crate::stitch::stitch;
 use crate::workers::run_tasks;
 use crate::{CellSize, Options, PolygonizeError};
 
@@ -41,6 +42,8 @@ pub struct Surface {
 struct Entry {
     key: BrickKey,
     surface: Arc<BrickSurface>,
+    /// Those of its bold vertices that may leave their cells if no other does.
+    bold: Arc<Vec<Bold>>,
     /// Its vertices where they ended up.
     vertices: Arc<Vec<Vertex>>,
     triangles: Arc<Vec<[VertexRef; 3]>>,
@@ -80,7 +83,8 @@ impl Surface {
             let made = surface.make_bricks(field, range, None, options)?;
             surface.bricks = made.into_iter().map(|(key, brick)| Entry::new(key, brick)).collect();
             let all: Vec<usize> = (0..surface.bricks.len()).collect();
-            surface.settle_entries(&all);
+            surface.settle_alone(&all);
+            surface.settle_together(&all);
             surface.stitch_entries(&all);
         }
         options.report(1.0);
@@ -272,18 +276,17 @@ impl Surface {
         self.bricks.extend(made.into_iter().map(|(key, brick)| Entry::new(key, brick)));
         self.bricks.sort_unstable_by_key(|entry| entry.key);
         touched.extend(&changes.removed);
-        let settled = self.entries_near(touched, -1..=1);
-        self.settle_entries(&settled);
-        let settled = settled.into_iter().map(|i| self.bricks[i].key).chain(changes.removed.iter().copied());
-        let stitched = self.entries_near(settled.collect(), 0..=1);
+        self.settle_alone(&self.entries_near(&touched, -1..=1));
+        self.settle_together(&self.entries_near(&touched, -2..=2));
+        let stitched = self.entries_near(&touched, -2..=3);
         self.stitch_entries(&stitched);
         changes.changed = stitched.into_iter().map(|i| self.bricks[i].key).collect();
         changes
     }
 
     /// The entries whose keys are any of `keys` plus an offset in `offsets` along each axis, ascending.
-    fn entries_near(&self, keys: Vec<BrickKey>, offsets: RangeInclusive<i32>) -> Vec<usize> {
-        let near = keys.into_iter().flat_map(|[x, y, z]| {
+    fn entries_near(&self, keys: &[BrickKey], offsets: RangeInclusive<i32>) -> Vec<usize> {
+        let near = keys.iter().flat_map(|&[x, y, z]| {
             let offsets = offsets.clone();
             offsets.clone().flat_map(move |dx| {
                 let offsets = offsets.clone();
@@ -296,21 +299,32 @@ impl Surface {
         keys.into_iter().filter_map(|key| self.find(key)).collect()
     }
 
-    /// Phase two for the entries with these indices.
-    fn settle_entries(&mut self, indices: &[usize]) {
-        let spacing = self.cell.mm();
-        let settled: Vec<_> = indices
-            .par_iter()
-            .with_min_len(8)
-            .map(|&i| {
-                let Entry { key, surface, .. } = &self.bricks[i];
-                if surface.bold.is_empty() {
-                    return Arc::clone(&surface.vertices);
-                }
-                let around = self.indices_around(*key, -1..=1);
-                Arc::new(settle(&around.map(|n| n.map(|n| &*self.bricks[n].surface)), spacing))
-            })
-            .collect();
+    /// The first half of phase two for the entries with these indices: bold vertices on their own.
+    fn settle_alone(&mut self, indices: &[usize]) {
+        let alone = self.for_entries(indices, |surface, entry| {
+            if entry.surface.bold.is_empty() {
+                return Arc::default();
+            }
+            let around = surface.indices_around(entry.key, -1..=1);
+            let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
+            Arc::new(fitting_alone(&surfaces, surface.cell.mm()))
+        });
+        for (&i, bold) in indices.iter().zip(alone) {
+            self.bricks[i].bold = bold;
+        }
+    }
+
+    /// The second half of phase two: bold vertices among others.
+    fn settle_together(&mut self, indices: &[usize]) {
+        let settled = self.for_entries(indices, |surface, entry| {
+            if entry.bold.is_empty() {
+                return Arc::clone(&entry.surface.vertices);
+            }
+            let around = surface.indices_around(entry.key, -1..=1);
+            let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
+            let bold = around.map(|n| n.map(|n| &surface.bricks[n].bold[..]));
+            Arc::new(settle(&surfaces, &bold, surface.cell.mm()))
+        });
         for (&i, vertices) in indices.iter().zip(settled) {
             self.bricks[i].vertices = vertices;
         }
@@ -318,20 +332,20 @@ impl Surface {
 
     /// Phase three for the entries with these indices.
     fn stitch_entries(&mut self, indices: &[usize]) {
-        let spacing = self.cell.mm();
-        let stitched: Vec<_> = indices
-            .par_iter()
-            .with_min_len(8)
-            .map(|&i| {
-                let around = self.indices_around(self.bricks[i].key, PREVIOUS);
-                let surfaces = around.map(|n| n.map(|n| &*self.bricks[n].surface));
-                let vertices = around.map(|n| n.map(|n| &self.bricks[n].vertices[..]));
-                Arc::new(stitch(&surfaces, &vertices, spacing))
-            })
-            .collect();
+        let stitched = self.for_entries(indices, |surface, entry| {
+            let around = surface.indices_around(entry.key, PREVIOUS);
+            let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
+            let vertices = around.map(|n| n.map(|n| &surface.bricks[n].vertices[..]));
+            Arc::new(stitch(&surfaces, &vertices, surface.cell.mm()))
+        });
         for (&i, triangles) in indices.iter().zip(stitched) {
             self.bricks[i].triangles = triangles;
         }
+    }
+
+    /// What `work` makes of each of these entries, in parallel.
+    fn for_entries<T: Send>(&self, indices: &[usize], work: impl Fn(&Self, &Entry) -> T + Sync) -> Vec<T> {
+        indices.par_iter().with_min_len(8).map(|&i| work(self, &self.bricks[i])).collect()
     }
 
     fn find(&self, key: BrickKey) -> Option<usize> {
@@ -361,7 +375,7 @@ impl Surface {
 
 impl Entry {
     fn new(key: BrickKey, surface: BrickSurface) -> Self {
-        Self { key, vertices: Arc::clone(&surface.vertices), surface: Arc::new(surface), triangles: Arc::default() }
+        Self { key, vertices: Arc::clone(&surface.vertices), bold: Arc::default(), surface: Arc::new(surface), triangles: Arc::default() }
     }
 }
 

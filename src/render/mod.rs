@@ -25,7 +25,7 @@ use shade::{KEY_FROM, Stage};
 use std::sync::Arc;
 
 /// The share of the picture that the shape fills in the direction in which it is larger.
-const FILLED: f32 = 0.80;
+const FILLED: f32 = 0.76;
 /// Rays along each side of the light's own picture.
 const LIGHT_RAYS: usize = 1024;
 /// From lower than this, the sine of 6°, the ground would be a sliver.
