@@ -12,9 +12,11 @@ const MOST_THREADS: i64 = 1024;
 /// Shapes that always 3D-print without supports: evaluate, mesh, render, convert and check them.
 #[derive(Debug, Parser)]
 #[command(name = "trullo", version, arg_required_else_help = true, disable_help_subcommand = true)]
-#[command(after_help = "Exit codes: 0 done, 1 the check found something, 2 bad input or usage, 3 interrupted.\n\
+#[command(
+    after_help = "Exit codes: 0 done, 1 the check found something, 2 bad input or usage, 3 interrupted.\n\
     Scenes are .trullo files, or 3MF files that Trullo wrote; meshes are STL, OBJ, PLY and 3MF.\n\
-    Lengths are millimetres, and z points up from the bed.")]
+    Lengths are millimetres, and z points up from the bed."
+)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -40,7 +42,9 @@ pub enum Verb {
     #[command(after_help = "Example: trullo convert bunny.stl bunny.3mf --height 60")]
     Convert(ConvertArgs),
     /// Draw a shaded picture of a scene or mesh.
-    #[command(after_help = "Example: trullo render snowman.trullo -o snowman.png --view front --size 800x600")]
+    #[command(
+        after_help = "Example: trullo render snowman.trullo -o snowman.png --view front --size 800x600"
+    )]
     Render(RenderArgs),
     /// Say whether a mesh is the boundary of a solid, and what it measures.
     ///
@@ -201,7 +205,8 @@ impl Verb {
 /// Three finite numbers with commas between.
 fn point(text: &str) -> Result<Vec3, String> {
     let wrong = || "a point is three numbers with commas between, such as 0,-2.5,10".to_owned();
-    let numbers: Vec<f32> = text.split(',').map(|n| n.trim().parse()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let numbers: Vec<f32> =
+        text.split(',').map(|n| n.trim().parse()).collect::<Result<_, _>>().map_err(|_| wrong())?;
     let p = Vec3::from_array(numbers.try_into().map_err(|_| wrong())?);
     if p.is_finite() { Ok(p) } else { Err(wrong()) }
 }

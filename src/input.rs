@@ -81,7 +81,8 @@ fn read(path: &Path, prefer: Prefer) -> Result<Input, Failure> {
     let Some(format) = format_of(path, &mut file).map_err(|what| Failure::of(path, what))? else {
         return read_scene(path, file).map(Input::Scene);
     };
-    let mut loaded = mesh::io::read(file, format, &ReadLimits::default()).map_err(|e| Failure::of(path, e))?;
+    let mut loaded =
+        mesh::io::read(file, format, &ReadLimits::default()).map_err(|e| Failure::of(path, e))?;
     match &loaded.attachments.scene {
         Some(text) if prefer == Prefer::Scene => {
             let scene = Scene::from_bytes(text, &mut MeshesBeside(path))
@@ -134,7 +135,9 @@ fn format_of(path: &Path, file: &mut File) -> Result<Option<Format>, String> {
 
 fn scale(path: &Path, mesh: &mut Mesh, height: f64) -> Result<(), Failure> {
     let scaled = mesh.fit_height(height).filter(|_| mesh.positions.iter().all(|p| p.is_finite()));
-    scaled.map(drop).ok_or_else(|| Failure::of(path, format!("flat, so it cannot be scaled to a height of {height} mm")))
+    scaled
+        .map(drop)
+        .ok_or_else(|| Failure::of(path, format!("flat, so it cannot be scaled to a height of {height} mm")))
 }
 
 /// Finds the meshes that a scene names, beside the scene's file.

@@ -39,7 +39,11 @@ fn main() -> ExitCode {
     match run_in_pool(&verb) {
         Ok((report, timings)) => {
             let code = u8::from(report.found);
-            output::show(report, &timings, Style { json: common.json, timings: common.timings, quiet: common.quiet });
+            output::show(
+                report,
+                &timings,
+                Style { json: common.json, timings: common.timings, quiet: common.quiet },
+            );
             ExitCode::from(code)
         }
         Err(failure) => {

@@ -20,7 +20,7 @@ pub struct Meshed {
     pub cell_mm: f32,
 }
 
-/// Meshes a scene. Stages "compile" and "mesh".
+/// Meshes a scene. Stages "compile", "size" and "mesh".
 ///
 /// Errors: a cell size that is too small for the shape; a shape without any solid.
 pub fn mesh_scene(
@@ -30,9 +30,9 @@ pub fn mesh_scene(
     job: &mut Job,
 ) -> Result<Meshed, Failure> {
     let tree = job.stage("compile", |_| Ok(Tree::new(&scene.root)))?;
+    let failed = |e| Failure::of_meshing(path, e);
+    let cell = job.stage("size", |_| cell_size(resolution, &tree).map_err(failed))?;
     job.stage("mesh", |watch| {
-        let failed = |e| Failure::of_meshing(path, e);
-        let cell = cell_size(resolution, &tree).map_err(failed)?;
         let progress = |share| watch.report(share);
         let options = Options { cancel: Some(watch.cancel), progress: Some(&progress), ..Options::default() };
         let mesh = Surface::build(&tree, cell, &options).map_err(failed)?.mesh();
@@ -98,7 +98,8 @@ fn problems(validity: &Validity) -> Vec<String> {
     let serious = Fault::ALL.into_iter().filter(|&fault| is_serious(fault) && validity.count(fault) > 0);
     let told = serious.map(|fault| {
         let place = validity.findings().find(|finding| finding.fault == fault).map(|f| f.place);
-        let place = place.map_or(String::new(), |p| format!(" (the first at {:.3}, {:.3}, {:.3})", p.x, p.y, p.z));
+        let place =
+            place.map_or(String::new(), |p| format!(" (the first at {:.3}, {:.3}, {:.3})", p.x, p.y, p.z));
         format!("{} × {fault}{place}", validity.count(fault))
     });
     told.collect()
@@ -106,8 +107,5 @@ fn problems(validity: &Validity) -> Vec<String> {
 
 /// Whether a fault keeps a mesh from being the boundary of a solid; slicers put up with the others.
 pub fn is_serious(fault: Fault) -> bool {
-    !matches!(
-        fault,
-        Fault::ZeroArea | Fault::UnusedVertex | Fault::NonManifoldVertex | Fault::RedundantBody
-    )
+    !matches!(fault, Fault::ZeroArea | Fault::UnusedVertex | Fault::NonManifoldVertex | Fault::RedundantBody)
 }

@@ -57,7 +57,8 @@ struct Search {
 
 impl Search {
     fn visit(&mut self, sampler: &mut dyn Sampler, region: Aabb) {
-        if self.known.contains(region.min) && self.known.contains(region.max) {
+        let region = without(region, self.known);
+        if region.is_empty() {
             return;
         }
         self.left = self.left.saturating_sub(1);
@@ -74,6 +75,26 @@ impl Search {
         }
         sampler.leave();
     }
+}
+
+/// What is left of a region without the part in `known`, as far as that is a box: where the region sticks out
+/// along one axis only. Without this, flat faces of a solid would be followed all over.
+fn without(region: Aabb, known: Aabb) -> Aabb {
+    let low = region.min.cmpge(known.min);
+    let high = region.max.cmple(known.max);
+    let within = low & high;
+    if within.all() {
+        return Aabb::EMPTY;
+    }
+    let mut left = region;
+    for axis in (0..3).filter(|axis| (0..3).all(|other| other == *axis || within.test(other))) {
+        if low.test(axis) {
+            left.min[axis] = left.min[axis].max(known.max[axis]);
+        } else if high.test(axis) {
+            left.max[axis] = left.max[axis].min(known.min[axis]);
+        }
+    }
+    left
 }
 
 /// A region cut in two across its longest side.
@@ -121,6 +142,20 @@ mod tests {
         assert!(found.contains(exact.min) && found.contains(exact.max), "{found:?}");
         assert!((found.min - exact.min).abs().max_element() < 0.7, "{found:?}");
         assert!((found.max - exact.max).abs().max_element() < 0.7, "{found:?}");
+    }
+
+    #[test]
+    fn flat_faces_are_found_exactly_and_soon() {
+        let shape = cuboid([0.0, 0.0, 26.0], [60.0, 40.0, 52.0])
+            .union(cylinder([0.0, 0.0, 0.0], [0.0, 0.0, 2.0], 35.0))
+            .translate([1.3, 0.7, 0.0]);
+        let tree = Tree::new(&shape);
+        let mut search = Search { known: Aabb::EMPTY, finest: 0.2, left: PATIENCE };
+        search.visit(&mut *tree.sampler(), tree.support());
+        assert!(search.left > PATIENCE - 20_000, "{} regions", PATIENCE - search.left);
+        let exact = Aabb { min: Vec3::new(-33.7, -34.3, 0.0), max: Vec3::new(36.3, 35.7, 52.0) };
+        assert!(search.known.contains(exact.min) && search.known.contains(exact.max), "{:?}", search.known);
+        assert!(exact.grown(0.5).contains(search.known.min) && exact.grown(0.5).contains(search.known.max));
     }
 
     #[test]

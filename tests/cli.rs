@@ -8,7 +8,8 @@ use serde_json::Value;
 #[test]
 fn eval_tells_value_gradient_side_and_the_nodes_that_decide() {
     let folder = Folder::with_scene("ball.trullo", SNOWMAN);
-    let out = folder.trullo(&["eval", "ball.trullo", "--at", "0,20,10", "--at", "-10,0,10", "--explain", "--json"]);
+    let out =
+        folder.trullo(&["eval", "ball.trullo", "--at", "0,20,10", "--at", "-10,0,10", "--explain", "--json"]);
     assert_eq!(out.status.code(), Some(0));
     let points = json_of(&out)["points"].clone();
     assert_eq!(points[0]["inside"], false);
@@ -25,7 +26,8 @@ fn tree_lists_every_node_with_its_box() {
     let folder = Folder::with_scene("s.trullo", SNOWMAN);
     let out = folder.trullo(&["tree", "s.trullo", "--json"]);
     let json = json_of(&out);
-    let ids: Vec<&str> = json["nodes"].as_array().expect("a list").iter().filter_map(|n| n["id"].as_str()).collect();
+    let ids: Vec<&str> =
+        json["nodes"].as_array().expect("a list").iter().filter_map(|n| n["id"].as_str()).collect();
     assert_eq!(ids, ["/", "/0", "/1"]);
     let low = json["nodes"][1]["box"]["min"][0].as_f64().expect("a number");
     assert!((-10.5..=-10.0).contains(&low), "the ball of 10 mm begins at {low}");
@@ -39,7 +41,8 @@ fn mesh_writes_a_ball_of_the_right_volume_in_every_format() {
     let folder = Folder::with_scene("ball.trullo", ball);
     for format in ["stl", "obj", "ply", "3mf"] {
         let name = format!("ball.{format}");
-        let out = folder.trullo(&["mesh", "ball.trullo", "-o", &name, "--cells", "64", "--json", "--timings"]);
+        let out =
+            folder.trullo(&["mesh", "ball.trullo", "-o", &name, "--cells", "64", "--json", "--timings"]);
         assert_eq!(out.status.code(), Some(0), "{format}");
         let json = json_of(&out);
         let volume = json["volume_mm3"].as_f64().expect("a number");
@@ -102,7 +105,8 @@ fn convert_scales_to_a_height_and_refuses_what_is_not_closed() {
 fn simplified_meshes_are_smaller_and_still_solid() {
     let folder = Folder::with_scene("s.trullo", SNOWMAN);
     let triangles = |more: &[&str]| {
-        let out = folder.trullo(&[&["mesh", "s.trullo", "-o", "s.stl", "--cells", "40", "--json"], more].concat());
+        let out =
+            folder.trullo(&[&["mesh", "s.trullo", "-o", "s.stl", "--cells", "40", "--json"], more].concat());
         json_of(&out)["triangles"].as_u64().expect("a count")
     };
     let (full, simple) = (triangles(&[]), triangles(&["--simplify", "0.1"]));

@@ -130,7 +130,10 @@ fn usage_errors_end_with_two_and_help_with_nought() {
 fn scenes_and_meshes_are_not_taken_for_each_other() {
     let folder = Folder::with_scene("s.trullo", SNOWMAN);
     folder.trullo(&["mesh", "s.trullo", "-o", "s.stl", "--cells", "12"]);
-    assert_failed(&folder.trullo(&["mesh", "s.stl", "-o", "t.stl"]), "a mesh (binary STL), not a scene; `trullo convert`");
+    assert_failed(
+        &folder.trullo(&["mesh", "s.stl", "-o", "t.stl"]),
+        "a mesh (binary STL), not a scene; `trullo convert`",
+    );
     assert_failed(&folder.trullo(&["convert", "s.stl", "t.trullo"]), "carries no scene");
     assert_failed(&folder.trullo(&["check", "s.trullo", "--height", "5"]), "--height scales meshes only");
     let empty = r#"{"format": "trullo", "version": 1, "root": {"type": "union", "children": []}}"#;

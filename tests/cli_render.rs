@@ -21,14 +21,23 @@ fn is_orange([r, g, b]: [u8; 3]) -> bool {
 #[test]
 fn a_rendered_scene_is_centred_and_coloured() {
     let folder = Folder::with_scene("s.trullo", SNOWMAN);
-    let arguments = ["render", "s.trullo", "-o", "s.png", "--size", "200x160", "--view", "front", "--background", "#0000ff"];
+    let arguments = [
+        "render",
+        "s.trullo",
+        "-o",
+        "s.png",
+        "--size",
+        "200x160",
+        "--view",
+        "front",
+        "--background",
+        "#0000ff",
+    ];
     assert_eq!(folder.trullo(&arguments).status.code(), Some(0));
     let (width, pixels) = decoded(&folder.read("s.png"));
     assert_eq!((width, pixels.len() / width), (200, 160));
-    let shape: Vec<(usize, usize)> = (0..pixels.len())
-        .filter(|&i| pixels[i] != [0, 0, 255])
-        .map(|i| (i % width, i / width))
-        .collect();
+    let shape: Vec<(usize, usize)> =
+        (0..pixels.len()).filter(|&i| pixels[i] != [0, 0, 255]).map(|i| (i % width, i / width)).collect();
     let middle = |side: fn(&(usize, usize)) -> usize| {
         let sides = || shape.iter().map(side);
         sides().min().zip(sides().max()).map_or(0, |(low, high)| (low + high).div_ceil(2))
@@ -44,8 +53,18 @@ fn a_mesh_covers_the_same_pixels_as_its_scene() {
     let folder = Folder::with_scene("s.trullo", SNOWMAN);
     folder.trullo(&["mesh", "s.trullo", "-o", "s.stl", "--cells", "64"]);
     let covered = |input: &str| {
-        let arguments =
-            ["render", input, "-o", "p.png", "--size", "160x120", "--view", "front", "--background", "#0000ff"];
+        let arguments = [
+            "render",
+            input,
+            "-o",
+            "p.png",
+            "--size",
+            "160x120",
+            "--view",
+            "front",
+            "--background",
+            "#0000ff",
+        ];
         assert_eq!(folder.trullo(&arguments).status.code(), Some(0), "{input}");
         let (_, pixels) = decoded(&folder.read("p.png"));
         pixels.into_iter().map(|p| p != [0, 0, 255]).collect::<Vec<_>>()

@@ -2,7 +2,7 @@
 
 use crate::falloff::{larger, smaller};
 use crate::field::Interval;
-use crate::scalar::{Scalar, Slope, Triple, dot, scaled, sum};
+use crate::scalar::{Scalar, Slope, Triple, both_pieces, dot, scaled, sum};
 use glam::Mat3;
 
 /// `max(f, g)`.
@@ -26,13 +26,13 @@ pub(crate) fn cut<S: Scalar>(f: Slope<S>, g: Slope<S>) -> Slope<S> {
 /// `f + g`.
 #[inline(always)]
 pub(crate) fn add<S: Scalar>(f: Slope<S>, g: Slope<S>) -> Slope<S> {
-    Slope::new(f.value + g.value, sum(f.gradient, g.gradient))
+    Slope::new(f.value + g.value, sum(f.gradient, g.gradient)).on(both_pieces(f.piece, g.piece))
 }
 
 /// `1 − f`: what is outside becomes inside.
 #[inline(always)]
 pub(crate) fn complement<S: Scalar>(f: Slope<S>) -> Slope<S> {
-    Slope::new(S::of(1.0) - f.value, scaled(f.gradient, S::of(-1.0)))
+    Slope::new(S::of(1.0) - f.value, scaled(f.gradient, S::of(-1.0))).on(f.piece)
 }
 
 /// `max(0, f)`.
@@ -53,7 +53,7 @@ pub(crate) struct Ricci(pub f32);
 impl Ricci {
     #[inline(always)]
     pub fn term<S: Scalar>(self, f: Slope<S>) -> Slope<S> {
-        if self.0 == 2.0 { Slope::new(f.value * f.value, scaled(f.gradient, f.value)) } else { f }
+        if self.0 == 2.0 { Slope::new(f.value * f.value, scaled(f.gradient, f.value)).on(f.piece) } else { f }
     }
 
     #[inline(always)]
@@ -62,7 +62,8 @@ impl Ricci {
             return add(a, b);
         }
         let (value, by_a, by_b) = norm(a.value, b.value, self.0);
-        Slope::new(value, sum(scaled(a.gradient, by_a), scaled(b.gradient, by_b)))
+        let gradient = sum(scaled(a.gradient, by_a), scaled(b.gradient, by_b));
+        Slope::new(value, gradient).on(both_pieces(a.piece, b.piece))
     }
 
     #[inline(always)]
@@ -71,7 +72,8 @@ impl Ricci {
             return join;
         }
         let value = join.value.sqrt();
-        Slope::new(value, scaled(join.gradient, S::of(1.0) / value.larger(S::of(1e-19))))
+        let gradient = scaled(join.gradient, S::of(1.0) / value.larger(S::of(1e-19)));
+        Slope::new(value, gradient).on(join.piece)
     }
 
     /// The blend of two.
@@ -116,11 +118,12 @@ fn larger_factored_out<S: Scalar>(large: S, small: S, s: f32) -> (S, S, S) {
 /// either is positive (outside of something), else the larger, so that blends above 1 stay continuous.
 #[inline(always)]
 pub(crate) fn soft_outside<S: Scalar>(u: Slope<S>, v: Slope<S>, s: f32) -> Slope<S> {
+    let piece = both_pieces(u.piece, v.piece);
     if u.value.value() <= 0.0 {
-        return union(u, v);
+        return union(u, v).on(piece);
     }
     if v.value.value() <= 0.0 {
-        return u;
+        return u.on(piece);
     }
     Ricci(s).both(u, v)
 }
@@ -129,12 +132,13 @@ pub(crate) fn soft_outside<S: Scalar>(u: Slope<S>, v: Slope<S>, s: f32) -> Slope
 /// away: `f` exactly where `g` is 0, also where blends made `f` exceed 1.
 #[inline(always)]
 pub(crate) fn soft_cut<S: Scalar>(f: Slope<S>, g: Slope<S>, s: f32) -> Slope<S> {
+    let piece = both_pieces(f.piece, g.piece);
     if g.value.value() <= 0.0 {
-        return f;
+        return f.on(piece);
     }
     let u = complement(f);
     let outside = if u.value.value() < 0.0 { add(u, g) } else { Ricci(s).both(u, g) };
-    solid_part(complement(outside))
+    solid_part(complement(outside)).on(piece)
 }
 
 /// The share of the smaller field in the larger below which [`gradient_blend`] is the plain union.
@@ -157,11 +161,12 @@ const FULLEST: f32 = 1.0 + (1.0 - CLEAN) / (3.0 + CLEAN);
 /// operator.
 #[inline(always)]
 pub(crate) fn gradient_blend<S: Scalar>(f: Slope<S>, g: Slope<S>) -> Slope<S> {
+    let piece = both_pieces(f.piece, g.piece);
     let Some((by_f, by_g)) = gradient_blend_weights(f, g) else {
-        return union(f, g);
+        return union(f, g).on(piece);
     };
     let direction: Triple<S> = sum(scaled(f.gradient, by_f), scaled(g.gradient, by_g));
-    Slope::new(f.value * by_f + g.value * by_g, direction)
+    Slope::new(f.value * by_f + g.value * by_g, direction).on(piece)
 }
 
 /// The derivatives of [`gradient_blend`] by its two values, whose weighted sum it is; `None` where it is the
@@ -198,9 +203,9 @@ pub(crate) fn gradient_blend_in<S: Scalar>(frame: Option<&Mat3>, f: Slope<S>, g:
     let turned = |map: &Mat3, v: Triple<S>| -> Triple<S> {
         std::array::from_fn(|r| dot(map.row(r).to_array().map(S::of), v))
     };
-    let seen = |f: Slope<S>| Slope::new(f.value, turned(frame, f.gradient));
+    let seen = |f: Slope<S>| Slope::new(f.value, turned(frame, f.gradient)).on(f.piece);
     let blend = gradient_blend(seen(f), seen(g));
-    Slope::new(blend.value, turned(&frame.inverse(), blend.gradient))
+    Slope::new(blend.value, turned(&frame.inverse(), blend.gradient)).on(blend.piece)
 }
 
 impl Interval {

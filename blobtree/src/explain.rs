@@ -58,7 +58,7 @@ fn visit(node: &NodeRef, sample: Sample, view: View, parts: &mut Vec<Part>) {
     let share = if node.is_heard() { view.share } else { 0.0 };
     parts.push(Part {
         path: view.path.clone(),
-        sample: Sample { value: sample.value, gradient },
+        sample: Sample { gradient, ..sample },
         share,
         heard: node.is_heard(),
     });

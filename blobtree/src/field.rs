@@ -116,6 +116,9 @@ pub struct Sample {
     /// The derivative of the value, per mm. Points inwards at the surface, as fields grow inwards.
     /// At a crease it is that of the branch that decides the value.
     pub gradient: Vec3,
+    /// Tells smooth pieces of the field apart: between nearby places with the same number, not 0, the
+    /// gradient does not jump. Different numbers, or 0, say nothing. Numbers compare within one region.
+    pub piece: u32,
 }
 
 /// The place of a cubic brick of 16³ samples in the lattice of all integer multiples of `spacing`.

@@ -166,20 +166,34 @@ pub(crate) fn difference<S: Scalar>(a: Triple<S>, b: Triple<S>) -> Triple<S> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+/// The piece of a field that depends smoothly on two others, each on its own.
+#[inline(always)]
+pub(crate) fn both_pieces(a: u32, b: u32) -> u32 {
+    a.wrapping_mul(0x01000193).wrapping_add(b)
+}
+
 /// A field's value and gradient, or any value with a direction that goes with it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slope<S> {
     pub value: S,
     pub gradient: Triple<S>,
+    /// Tells smooth pieces of the field apart: see [`Sample::piece`](crate::Sample::piece).
+    pub piece: u32,
 }
 
 impl<S: Scalar> Slope<S> {
     pub const fn new(value: S, gradient: Triple<S>) -> Self {
-        Self { value, gradient }
+        Self { value, gradient, piece: 0 }
+    }
+
+    /// The same on this piece.
+    #[inline(always)]
+    pub fn on(self, piece: u32) -> Self {
+        Self { piece, ..self }
     }
 
     #[inline(always)]
     pub fn constant(value: f32) -> Self {
-        Self { value: S::of(value), gradient: [S::of(0.0); 3] }
+        Self::new(S::of(value), [S::of(0.0); 3])
     }
 }

@@ -22,6 +22,8 @@ pub(crate) enum WarpMap {
 pub(crate) struct Warped<S> {
     pub place: Triple<S>,
     pub rows: [[S; 3]; 3],
+    /// Tells apart stretches between which the derivatives jump.
+    pub piece: u32,
 }
 
 impl<S: Scalar> Warped<S> {
@@ -38,7 +40,11 @@ impl WarpMap {
     pub fn child_from_parent<S: Scalar>(&self, p: Triple<S>) -> Warped<S> {
         match self {
             Self::Affine(w) => {
-                Warped { place: w.child_from_parent.apply(p), rows: w.child_from_parent.rows() }
+                Warped {
+                place: w.child_from_parent.apply(p),
+                rows: w.child_from_parent.rows(),
+                piece: 0,
+            }
             }
             Self::Taper(w) => w.child_from_parent(p),
             Self::Twist(w) => w.child_from_parent(p),
@@ -155,7 +161,9 @@ impl TaperMap {
             rows[a][a] = inverse;
             rows[a][w] = -(place[a] * slope * inverse);
         }
-        Warped { place, rows }
+        let at = p[w].value();
+        let piece = if at <= self.start { 0 } else if at < self.end { 1 } else { 2 };
+        Warped { place, rows, piece }
     }
 
     fn scaled_section(&self, region: &Aabb, factors: (f32, f32)) -> Aabb {
@@ -202,7 +210,7 @@ impl TwistMap {
         place[v] = cos * p[v] - sin * p[u];
         (rows[u][u], rows[u][v], rows[u][w]) = (cos, sin, rate * place[v]);
         (rows[v][u], rows[v][v], rows[v][w]) = (-sin, cos, -(rate * place[u]));
-        Warped { place, rows }
+        Warped { place, rows, piece: 0 }
     }
 
     fn child_region(&self, region: &Aabb) -> Aabb {
@@ -289,7 +297,8 @@ impl BendMap {
         // From the centre: along the axis, and out from it.
         let (along, out) = (p[w] - S::of(self.start), radius - side * p[u]);
         let (mut place, mut rows) = (p, identity());
-        match self.stretch(along.value(), out.value()) {
+        let stretch = self.stretch(along.value(), out.value());
+        match stretch {
             Stretch::Before => {}
             Stretch::Arc => {
                 let rho2 = (along * along + out * out).larger(S::of(1e-20));
@@ -310,7 +319,7 @@ impl BendMap {
                 (rows[u][w], rows[u][u]) = (-(side * sin), cos);
             }
         }
-        Warped { place, rows }
+        Warped { place, rows, piece: stretch as u32 }
     }
 
     /// The region in (along, out) from the centre: two ranges.

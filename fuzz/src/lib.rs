@@ -3,9 +3,14 @@
 //! A target is one line: `trullo_fuzz::target!(|data| …)` with what to do with the bytes. Panics, wrong promises,
 //! more than half a gigabyte of memory, and (by `./run`) more than two seconds for one input are finds.
 
+mod scene;
+
 use std::io::Cursor;
 
-use mesh::io::{Attachments, Format, ReadLimits, read, write};
+use mesh::Mesh;
+use mesh::io::{Attachments, Format, ReadLimits, close_cracks, read_as_written, write};
+
+pub use scene::read_scene;
 
 #[doc(hidden)]
 pub use libfuzzer_sys;
@@ -27,15 +32,22 @@ macro_rules! target {
     };
 }
 
-/// Reads a mesh; if there is one, it must be writable and come back the same.
+/// Reads a mesh; if there is one, it must be writable and come back the same, and so with its cracks closed.
 pub fn read_mesh(data: &[u8], named: Format) {
-    let Ok(loaded) = read(Cursor::new(data), named, &ReadLimits::default()) else {
+    let Ok(mut loaded) = read_as_written(Cursor::new(data), named, &ReadLimits::default()) else {
         return;
     };
+    assert_comes_back(&loaded.mesh);
+    if close_cracks(&mut loaded.mesh).is_some() {
+        assert_comes_back(&loaded.mesh);
+    }
+}
+
+fn assert_comes_back(mesh: &Mesh) {
     let mut file = Cursor::new(Vec::new());
-    write(&mut file, &loaded.mesh, Format::Ply, &Attachments::default()).expect("what was read is writable");
-    let back = read(&mut file, Format::Ply, &ReadLimits::default()).expect("what was written is readable");
-    assert!(back.mesh == loaded.mesh, "the mesh changed");
+    write(&mut file, mesh, Format::Ply, &Attachments::default()).expect("what was read is writable");
+    let back = read_as_written(&mut file, Format::Ply, &ReadLimits::default()).expect("what was written is readable");
+    assert!(back.mesh == *mesh, "the mesh changed");
 }
 
 /// A 3MF package whose model is these bytes, unpacked and so without a checksum in the fuzzer's way.

@@ -79,9 +79,11 @@ impl BrickSurface {
 
     /// All mixed cells with their places, x fastest.
     pub fn cells(&self) -> impl Iterator<Item = ([usize; 3], MixedCell)> {
-        let places = self.rows.iter().enumerate().flat_map(|(row, &word)| {
-            bits(word).map(move |x| [x, row % CELLS, row / CELLS])
-        });
+        let places = self
+            .rows
+            .iter()
+            .enumerate()
+            .flat_map(|(row, &word)| bits(word).map(move |x| [x, row % CELLS, row / CELLS]));
         places.zip(self.cells.iter().copied())
     }
 }

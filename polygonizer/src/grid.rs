@@ -8,7 +8,7 @@ use crate::patches::{edge_start, face_is_uniform};
 
 /// How far a vertex stays from the sides of the box it may move in, in cells. A surface in the outermost
 /// corner of a cell is missed by √3 of it at most, which leaves room below 1 % of a cell.
-const MARGIN: f32 = 1.0 / 256.0;
+pub(crate) const MARGIN: f32 = 1.0 / 256.0;
 
 /// Which side of the surface a field value is on. Values that are no number are outside.
 pub(crate) fn is_inside(value: f32) -> bool {
@@ -210,8 +210,8 @@ mod tests {
             for y in 0..CELLS {
                 for x in 0..CELLS {
                     let cell = [x as u8, y as u8, z as u8];
-                    let config = (0..8)
-                        .fold(0, |c, i| c | u8::from(is_inside(grid.value(corner(cell, i)))) << i);
+                    let config =
+                        (0..8).fold(0, |c, i| c | u8::from(is_inside(grid.value(corner(cell, i)))) << i);
                     assert_eq!(grid.config([x, y, z]), config);
                     assert_eq!(grid.mixed_cells(y, z) >> x & 1 == 1, config != 0 && config != 255);
                 }

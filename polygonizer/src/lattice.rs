@@ -137,8 +137,11 @@ mod tests {
     #[test]
     fn blocks_hold_each_brick_once() {
         let range = BrickRange { low: [-5, -1, 3], high: [6, 2, 9] };
-        let mut seen: Vec<_> =
-            range.blocks().iter().flat_map(|b| (0..BRICKS_PER_BLOCK).filter_map(move |n| range.in_block(b, n))).collect();
+        let mut seen: Vec<_> = range
+            .blocks()
+            .iter()
+            .flat_map(|b| (0..BRICKS_PER_BLOCK).filter_map(move |n| range.in_block(b, n)))
+            .collect();
         assert_eq!(seen.len() as u64, range.count());
         seen.sort_unstable();
         seen.dedup();

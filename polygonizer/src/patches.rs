@@ -85,8 +85,11 @@ fn is_crossed(config: u8, edge: usize) -> bool {
 fn segments(config: u8, face: usize, flipped: bool) -> Vec<[usize; 2]> {
     let (u, v) = ((face / 2 + 1) % 3, (face / 2 + 2) % 3);
     let corners = (0..8).filter(|c| face_corners(face) >> c & 1 == 1);
-    let mut crossed: Vec<usize> =
-        corners.clone().flat_map(|c| [edge_at(u, c), edge_at(v, c)]).filter(|&e| is_crossed(config, e)).collect();
+    let mut crossed: Vec<usize> = corners
+        .clone()
+        .flat_map(|c| [edge_at(u, c), edge_at(v, c)])
+        .filter(|&e| is_crossed(config, e))
+        .collect();
     crossed.sort_unstable();
     crossed.dedup();
     match crossed[..] {
@@ -158,7 +161,11 @@ mod tests {
             for edge in 0..12 {
                 let holders =
                     patches.edges[..usize::from(patches.count)].iter().filter(|e| *e >> edge & 1 == 1);
-                assert_eq!(holders.count(), usize::from(is_crossed(key as u8, edge)), "key {key} edge {edge}");
+                assert_eq!(
+                    holders.count(),
+                    usize::from(is_crossed(key as u8, edge)),
+                    "key {key} edge {edge}"
+                );
             }
         }
     }

@@ -52,11 +52,7 @@ pub(crate) fn meet(planes: &[Plane]) -> Option<Meeting> {
     let rank = order.iter().filter(|&&i| values[i] > SMALLEST_SHARE * values[order[0]]).count();
     let offset: DVec3 = order[..rank].iter().map(|&i| vectors[i] * (vectors[i].dot(right) / values[i])).sum();
     let free = vectors[order[2]].as_vec3();
-    Some(Meeting {
-        point: (mass_point + offset).as_vec3(),
-        rank: rank as u8,
-        free,
-    })
+    Some(Meeting { point: (mass_point + offset).as_vec3(), rank: rank as u8, free })
 }
 
 /// Eigenvalues and unit eigenvectors of a symmetric matrix, by Jacobi's rotations.

@@ -1,6 +1,6 @@
 //! The four vertices around a crossed lattice edge, and how to cut their quadrilateral.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 use crate::brick_surface::MixedCell;
 use crate::lattice::CELLS;
@@ -76,19 +76,37 @@ pub(crate) fn ring_around(
 /// four are in their quadrants with a margin of a 256th of a cell, the better one always leaves more.
 const LEAST_AREA: f32 = 1e-6;
 
-/// How much more than [`LEAST_AREA`] the smaller triangle has that each diagonal leaves, in squared cells as
-/// seen along the edge: first for that from 0 to 2. The ring is counter-clockwise seen from outside, and
-/// `start_inside` says whether outside is where the edge leads.
-pub(crate) fn spare_areas(positions: [Vec3; 4], axis: usize, start_inside: bool, spacing: f32) -> [f32; 2] {
+/// How close to the outward normals at its corners a triangle's normal must be (as a dot product) to be
+/// known as not turned over whatever it looks like along the edge. At a right-angled sharp edge, where normals
+/// are means, a right triangle has 0.7; at a corner of three right angles 0.58.
+const AGREEMENT: f32 = 0.3;
+
+/// For each diagonal, how much more than the least area the smaller of its two triangles has, mm²; first for
+/// that from 0 to 2. None above 0: no cut without a flat triangle or one turned over.
+///
+/// The ring is counter-clockwise seen from outside, and `start_inside` says whether outside is where the edge
+/// leads. Areas are those seen along the edge; where these are too small, true ones if the triangles face as
+/// the surface does at their corners.
+pub(crate) fn spare_areas(vertices: [&Vertex; 4], axis: usize, start_inside: bool, spacing: f32) -> [f32; 2] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let seen = positions.map(|p| {
-        let from_first = p - positions[0];
-        Vec2::new(from_first[u], from_first[v])
-    });
+    let from_first = vertices.map(|vertex| vertex.position - vertices[0].position);
+    let seen = from_first.map(|p| Vec2::new(p[u], p[v]));
     let side = if start_inside { 0.5 } else { -0.5 };
-    let area = |a: usize, b: usize, c: usize| side * (seen[b] - seen[a]).perp_dot(seen[c] - seen[a]);
+    let area = |[a, b, c]: [usize; 3]| side * (seen[b] - seen[a]).perp_dot(seen[c] - seen[a]);
     let least = LEAST_AREA * spacing * spacing;
-    [area(0, 1, 2).min(area(0, 2, 3)) - least, area(1, 2, 3).min(area(1, 3, 0)) - least]
+    [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]].map(|[first, second]| {
+        let spare = area(first).min(area(second)) - least;
+        if spare > 0.0 {
+            return spare;
+        }
+        let true_area = |[a, b, c]: [usize; 3]| {
+            let normal = (from_first[b] - from_first[a]).cross(from_first[c] - from_first[a]);
+            let twice = normal.length();
+            let agrees = [a, b, c].iter().all(|&i| vertices[i].normal.dot(normal) > AGREEMENT * twice);
+            if agrees { 0.5 * twice } else { 0.0 }
+        };
+        spare.max(true_area(first).min(true_area(second)) - least)
+    })
 }
 
 /// Whether the diagonal from 1 to 3 is better than that from 0 to 2.

@@ -6,7 +6,6 @@
 //! the others turn out to be, the lowest of a ring that left home has made sure of the ring.
 
 use blobtree::BRICK_SAMPLES;
-use glam::Vec3;
 
 use crate::brick_surface::{Bold, BrickSurface};
 use crate::patches::edge_start;
@@ -20,7 +19,7 @@ const _: () = assert!(4 * BRICK_SAMPLES <= 1 << 16);
 pub(crate) fn fitting_alone(around: &Around<&BrickSurface>, spacing: f32) -> Vec<Bold> {
     let Some(own) = around[OWN] else { return Vec::new() };
     let alone = |bold: &Bold| {
-        let fits = |place: &&Vertex| fits(around, own, bold, place.position, |_| None, spacing);
+        let fits = |place: &&Vertex| fits(around, own, bold, place, |_| None, spacing);
         let places: Vec<Vertex> = bold.places.iter().filter(fits).copied().collect();
         (!places.is_empty()).then(|| Bold { places, ..*bold })
     };
@@ -29,11 +28,7 @@ pub(crate) fn fitting_alone(around: &Around<&BrickSurface>, spacing: f32) -> Vec
 
 /// The vertices of the middle brick, those moved whose bold places do no harm. `bold` are those of all bricks
 /// around that fit alone.
-pub(crate) fn settle(
-    around: &Around<&BrickSurface>,
-    bold: &Around<&[Bold]>,
-    spacing: f32,
-) -> Vec<Vertex> {
+pub(crate) fn settle(around: &Around<&BrickSurface>, bold: &Around<&[Bold]>, spacing: f32) -> Vec<Vertex> {
     let (Some(own), Some(own_bold)) = (around[OWN], bold[OWN]) else { return Vec::new() };
     let mut vertices = own.vertices.to_vec();
     for mover in own_bold {
@@ -42,7 +37,7 @@ pub(crate) fn settle(
             let found = others.binary_search_by_key(&vertex.number(), |b| usize::from(b.number)).ok()?;
             Some(&others[found]).filter(|other| other.rank() < mover.rank())
         };
-        let fits = |place: &&Vertex| fits(around, own, mover, place.position, rival, spacing);
+        let fits = |place: &&Vertex| fits(around, own, mover, place, rival, spacing);
         if let Some(&place) = mover.places.iter().find(fits) {
             vertices[usize::from(mover.number)] = place;
         }
@@ -55,7 +50,7 @@ fn fits<'a>(
     around: &Around<&BrickSurface>,
     own: &BrickSurface,
     mover: &Bold,
-    place: Vec3,
+    place: &Vertex,
     rival: impl Fn(VertexRef) -> Option<&'a Bold>,
     spacing: f32,
 ) -> bool {
@@ -65,10 +60,10 @@ fn fits<'a>(
         ring.is_some_and(|ring| {
             let choices = ring.map(|vertex| {
                 if vertex == VertexRef::new(OWN, mover.number) {
-                    return vec![place];
+                    return vec![*place];
                 }
-                let home = around[vertex.brick()].map(|brick| brick.vertices[vertex.number()].position);
-                let away = rival(vertex).into_iter().flat_map(|other| &other.places).map(|p| p.position);
+                let home = around[vertex.brick()].map(|brick| brick.vertices[vertex.number()]);
+                let away = rival(vertex).into_iter().flat_map(|other| &other.places).copied();
                 home.into_iter().chain(away).collect()
             });
             all_can_be_cut(&choices, edge / 4, start_inside, spacing)
@@ -77,14 +72,14 @@ fn fits<'a>(
 }
 
 /// Whether a ring can be cut whichever of its choices each vertex takes.
-fn all_can_be_cut(choices: &[Vec<Vec3>; 4], axis: usize, start_inside: bool, spacing: f32) -> bool {
+fn all_can_be_cut(choices: &[Vec<Vertex>; 4], axis: usize, start_inside: bool, spacing: f32) -> bool {
     let combinations = choices.iter().map(Vec::len).product();
     (0..combinations).all(|mut rest: usize| {
-        let positions = std::array::from_fn(|i| {
+        let vertices = std::array::from_fn(|i| {
             let choice = rest % choices[i].len();
             rest /= choices[i].len();
-            choices[i][choice]
+            &choices[i][choice]
         });
-        spare_areas(positions, axis, start_inside, spacing).into_iter().any(|spare| spare > 0.0)
+        spare_areas(vertices, axis, start_inside, spacing).into_iter().any(|spare| spare > 0.0)
     })
 }

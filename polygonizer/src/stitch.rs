@@ -30,7 +30,7 @@ pub(crate) fn stitch(
             let ring = ring_around(mixed_at, cell, config, 4 * axis);
             let found = ring.and_then(|ring| Some((ring, vertices_of(ring, vertices)?)));
             let Some((ring, corners)) = found else { continue };
-            let spare = spare_areas(corners.map(|v| v.position), axis, config & 1 == 1, spacing);
+            let spare = spare_areas(corners, axis, config & 1 == 1, spacing);
             let [a, b, c, d] = ring;
             if prefers_second(corners, spare) {
                 triangles.extend([[b, c, d], [b, d, a]]);

@@ -247,11 +247,7 @@ impl Surface {
     }
 
     /// Puts `made` in the place of all bricks that are `stale`, then phase two where it matters.
-    fn replace(
-        &mut self,
-        made: Vec<(BrickKey, BrickSurface)>,
-        stale: impl Fn(BrickKey) -> bool,
-    ) -> Changes {
+    fn replace(&mut self, made: Vec<(BrickKey, BrickSurface)>, stale: impl Fn(BrickKey) -> bool) -> Changes {
         let mut made: BTreeMap<_, _> = made.into_iter().collect();
         let mut changes = Changes::default();
         let mut touched = Vec::new();
@@ -276,12 +272,26 @@ impl Surface {
         self.bricks.extend(made.into_iter().map(|(key, brick)| Entry::new(key, brick)));
         self.bricks.sort_unstable_by_key(|entry| entry.key);
         touched.extend(&changes.removed);
-        self.settle_alone(&self.entries_near(&touched, -1..=1));
-        self.settle_together(&self.entries_near(&touched, -2..=2));
-        let stitched = self.entries_near(&touched, -2..=3);
-        self.stitch_entries(&stitched);
-        changes.changed = stitched.into_iter().map(|i| self.bricks[i].key).collect();
+        changes.changed = self.finish_around(&touched);
         changes
+    }
+
+    /// Phases two and three after a change of phase one in the bricks with these keys. Returns the keys of all
+    /// that are different now.
+    fn finish_around(&mut self, touched: &[BrickKey]) -> Vec<BrickKey> {
+        let stitched = self.entries_near(touched, -2..=3);
+        let before: Vec<Entry> = stitched.iter().map(|&i| self.bricks[i].clone()).collect();
+        self.settle_alone(&self.entries_near(touched, -1..=1));
+        self.settle_together(&self.entries_near(touched, -2..=2));
+        self.stitch_entries(&stitched);
+        let differs = |(i, old): &(&usize, &Entry)| {
+            let new = &self.bricks[**i];
+            touched.contains(&new.key) || new.vertices != old.vertices || new.triangles != old.triangles
+        };
+        let different: Vec<BrickKey> =
+            stitched.iter().zip(&before).filter(differs).map(|(_, old)| old.key).collect();
+        // A chunk also holds vertices of the bricks before it.
+        self.entries_near(&different, 0..=1).into_iter().map(|i| self.bricks[i].key).collect()
     }
 
     /// The entries whose keys are any of `keys` plus an offset in `offsets` along each axis, ascending.
@@ -375,7 +385,13 @@ impl Surface {
 
 impl Entry {
     fn new(key: BrickKey, surface: BrickSurface) -> Self {
-        Self { key, vertices: Arc::clone(&surface.vertices), bold: Arc::default(), surface: Arc::new(surface), triangles: Arc::default() }
+        Self {
+            key,
+            vertices: Arc::clone(&surface.vertices),
+            bold: Arc::default(),
+            surface: Arc::new(surface),
+            triangles: Arc::default(),
+        }
     }
 }
 

@@ -76,7 +76,8 @@ fn any_number_of_threads_gives_the_same_mesh() {
 
 #[test]
 fn chunks_together_are_the_surface() {
-    let surface = Surface::build(&torus(Vec3::ZERO, 8.0, 3.0), cell(0.4), &Options::default()).expect("small");
+    let surface =
+        Surface::build(&torus(Vec3::ZERO, 8.0, 3.0), cell(0.4), &Options::default()).expect("small");
     let chunks: Vec<_> = surface.bricks().map(|key| surface.chunk(key)).collect();
     let whole = surface.mesh();
     assert_eq!(chunks.iter().map(|c| c.mesh.triangles.len()).sum::<usize>(), whole.triangles.len());
@@ -155,11 +156,16 @@ fn an_empty_field_has_an_empty_surface() {
 
 #[test]
 fn values_that_are_no_numbers_are_outside_and_harm_nothing() {
-    let mut broken = TurnedBox { center: Vec3::ZERO, turn: Random(3).turn(), half: Vec3::splat(4.0) }.as_planes();
+    let mut broken =
+        TurnedBox { center: Vec3::ZERO, turn: Random(3).turn(), half: Vec3::splat(4.0) }.as_planes();
     let whole = broken.distance;
     broken.distance = Box::new(move |p| {
         let (d, g) = whole(p);
-        if (p.x * 3.0).sin() > 0.6 { (f32::NAN, g) } else { (d, if p.y > 1.0 { g * f32::INFINITY } else { g }) }
+        if (p.x * 3.0).sin() > 0.6 {
+            (f32::NAN, g)
+        } else {
+            (d, if p.y > 1.0 { g * f32::INFINITY } else { g })
+        }
     });
     let mesh = Surface::build(&broken, cell(0.3), &Options::default()).expect("small").mesh();
     assert_sound(&mesh, "broken field");

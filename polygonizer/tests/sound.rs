@@ -12,9 +12,9 @@ fn cell(mm: f32) -> CellSize {
 
 #[test]
 fn noise_gives_sound_meshes_in_smooth_and_in_creased_regions() {
-    for seed in 0..40 {
+    for seed in 0..10 {
         let density = [0.5, 0.3, 0.7, 0.15, 0.85][seed as usize % 5];
-        let noise = Noise { seed, size: 34, density, creased: seed % 2 == 0 };
+        let noise = Noise { seed, size: 32, density, creased: seed % 2 == 0 };
         let mesh = polygonize(&noise, cell(1.0)).expect("small");
         assert_sound(&mesh, &format!("noise with seed {seed}"));
         assert!(!mesh.triangles.is_empty());
@@ -30,11 +30,7 @@ fn assert_measures(name: &str, solid: &Solid, exact_volume: f64, exact_area: f64
     println!("{name}: volume off by {:.4} %, area by {:.4} %", 100.0 * volume, 100.0 * area);
     assert!(volume.abs() < 0.005, "{name}: volume is off by {volume}");
     assert!(area.abs() < 0.005, "{name}: area is off by {area}");
-    let worst = mesh
-        .positions
-        .iter()
-        .map(|&p| (solid.distance)(p).0.abs() / size.mm())
-        .fold(0.0, f32::max);
+    let worst = mesh.positions.iter().map(|&p| (solid.distance)(p).0.abs() / size.mm()).fold(0.0, f32::max);
     println!("{name}: worst vertex is {worst:.5} cells from the surface");
     assert!(worst < 0.01, "{name}: a vertex is {worst} cells from the surface");
 }
@@ -46,7 +42,12 @@ fn spheres_tori_cylinders_cones_and_boxes_have_their_volume_and_area() {
     assert_measures("sphere", &ball(center, 10.0), 4.0 / 3.0 * PI * 1000.0, 4.0 * PI * 100.0);
     let (torus_volume, torus_area) = (2.0 * PI * PI * 8.0 * 9.0, 4.0 * PI * PI * 8.0 * 3.0);
     assert_measures("torus", &torus(center, 8.0, 3.0), torus_volume, torus_area);
-    assert_measures("cylinder", &cylinder(center, 7.0, 10.0), PI * 49.0 * 20.0, PI * (2.0 * 49.0 + 14.0 * 20.0));
+    assert_measures(
+        "cylinder",
+        &cylinder(center, 7.0, 10.0),
+        PI * 49.0 * 20.0,
+        PI * (2.0 * 49.0 + 14.0 * 20.0),
+    );
     let slant = 7.0_f64.hypot(15.0);
     assert_measures("cone", &cone(center, 7.0, 15.0), PI * 49.0 * 5.0, PI * 7.0 * (7.0 + slant));
     let turned = TurnedBox { center, turn: Random(5).turn(), half: Vec3::new(5.0, 7.0, 9.0) };

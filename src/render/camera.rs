@@ -40,7 +40,8 @@ impl View {
         if let Some((_, [azimuth, elevation])) = Self::NAMED.iter().find(|(name, _)| *name == text) {
             return Ok(Self::from_degrees(*azimuth, *elevation));
         }
-        let numbers = text.split_once(',').and_then(|(a, e)| Some((a.trim().parse().ok()?, e.trim().parse().ok()?)));
+        let numbers =
+            text.split_once(',').and_then(|(a, e)| Some((a.trim().parse().ok()?, e.trim().parse().ok()?)));
         match numbers {
             Some((a, e)) if (-360.0..=360.0).contains(&a) && (-90.0..=90.0).contains(&e) => {
                 Ok(Self::from_degrees(a, e))

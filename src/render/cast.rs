@@ -83,14 +83,25 @@ struct Caster<'a> {
 impl<'a> Caster<'a> {
     fn new(sampler: Box<dyn Sampler + 'a>, painter: Painter<'a>, frame: Frame, depth: Depth) -> Self {
         let brackets = Vec::with_capacity(TILE);
-        Self { sampler, painter, frame, depth, values: Box::new([0.0; BRICK_SAMPLES]), met: [false; TILE], brackets }
+        Self {
+            sampler,
+            painter,
+            frame,
+            depth,
+            values: Box::new([0.0; BRICK_SAMPLES]),
+            met: [false; TILE],
+            brackets,
+        }
     }
 
     /// The brick of the tile at these columns and rows, `number` bricks from the back.
     fn brick(&self, column: usize, row: usize, number: i32) -> Brick {
         // Rows run down, the lattice runs up: a tile's lowest lattice row is its last.
         let y = self.frame.y_index(row) - CELLS;
-        Brick { origin: [self.frame.x_index(column), y, self.depth.back + number * CELLS], spacing: self.frame.pitch }
+        Brick {
+            origin: [self.frame.x_index(column), y, self.depth.back + number * CELLS],
+            spacing: self.frame.pitch,
+        }
     }
 
     /// The region of a row of tiles over some of the bricks.

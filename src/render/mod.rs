@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// The share of the picture that the shape fills in the direction in which it is larger.
 const FILLED: f32 = 0.76;
 /// Rays along each side of the light's own picture.
-const LIGHT_RAYS: usize = 1024;
+const LIGHT_RAYS: usize = 640;
 /// From lower than this, the sine of 6°, the ground would be a sliver.
 const LOWEST_VIEW: f32 = 0.1;
 /// Bytes of a PNG file that have no bearing on its pixels: no more than that.
@@ -67,7 +67,8 @@ pub fn picture(subject: &Subject, settings: &Settings, job: &mut Job) -> Result<
     }
     let camera = Camera::new(settings.view, world.center());
     let (camera, mut seen) = job.stage("look", |watch| {
-        let (camera, frame) = framed(&subject, camera, settings.size.map(|side| side as usize * RAYS), FILLED);
+        let (camera, frame) =
+            framed(&subject, camera, settings.size.map(|side| side as usize * RAYS), FILLED);
         Ok((camera, subject.draw(&camera, frame, watch)?))
     })?;
     let (light, lit) = job.stage("light", |watch| {
@@ -117,7 +118,7 @@ impl<'a> Prepared<'a> {
     /// The box of the solid, in the space of a camera or in the world.
     fn bounds(&self, camera: Option<&Camera>) -> Aabb {
         match self {
-            Self::Scene(root) => solid_box(&Tree::new(&*seen_by(root, camera))),
+            Self::Scene(root) => solid_box(&Tree::new(&seen_by(root, camera))),
             Self::Mesh(_, mesh) => {
                 let used = mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]);
                 match camera {
@@ -134,8 +135,10 @@ impl<'a> Prepared<'a> {
                 let root = seen_by(root, Some(camera));
                 let tree = Tree::new(&root);
                 let solid = solid_box(&tree);
-                if !(solid.size().max_element() / frame.pitch < cast::MOST_STEPS) {
-                    return Err(Failure::Input("the shape is too long and thin to be drawn from here".into()));
+                if solid.size().max_element() / frame.pitch > cast::MOST_STEPS {
+                    return Err(Failure::Input(
+                        "the shape is too long and thin to be drawn from here".into(),
+                    ));
                 }
                 cast::cast(&tree, solid, &Palette::new(&root), frame, watch)
             }

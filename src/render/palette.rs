@@ -90,7 +90,9 @@ fn collect(
 
 /// Whether something below may show another colour than the node itself: by its own, or as a tool without one.
 fn is_coloured_below(node: &Node) -> bool {
-    node.children().iter().any(|child| child.is_heard() && (child.color.is_some() || is_coloured_below(child)))
+    node.children()
+        .iter()
+        .any(|child| child.is_heard() && (child.color.is_some() || is_coloured_below(child)))
 }
 
 fn in_world(node: &NodeRef, warps: &[NodeRef]) -> NodeRef {

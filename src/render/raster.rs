@@ -51,7 +51,13 @@ impl<'a> Shaded<'a> {
     /// Draws the mesh as `camera` sees it.
     ///
     /// Errors: [`Failure::Interrupted`].
-    pub fn draw(&self, camera: &Camera, color: [u8; 3], frame: Frame, watch: &Watch) -> Result<Buffer, Failure> {
+    pub fn draw(
+        &self,
+        camera: &Camera,
+        color: [u8; 3],
+        frame: Frame,
+        watch: &Watch,
+    ) -> Result<Buffer, Failure> {
         let points: Vec<Vec3> = self.mesh.positions.par_iter().map(|&p| camera.point_from_world(p)).collect();
         let places: Vec<[f32; 2]> = points.par_iter().map(|&p| frame.place_of(p)).collect();
         let bands = self.bands(&places, frame);
@@ -75,7 +81,8 @@ impl<'a> Shaded<'a> {
         let mut bands = vec![Vec::new(); count];
         for (t, triangle) in (0u32..).zip(&self.mesh.triangles) {
             let rows = triangle.map(|v| places[v as usize][1]);
-            let (top, bottom) = (rows.into_iter().fold(f32::MAX, f32::min), rows.into_iter().fold(f32::MIN, f32::max));
+            let (top, bottom) =
+                (rows.into_iter().fold(f32::MAX, f32::min), rows.into_iter().fold(f32::MIN, f32::max));
             if bottom >= 0.0 && top < frame.rows as f32 {
                 let last = (bottom as usize / BAND).min(count - 1);
                 bands[top.max(0.0) as usize / BAND..=last].iter_mut().for_each(|band| band.push(t));
@@ -130,7 +137,14 @@ impl Spot {
     }
 
     /// Draws itself into the band of rows that begins at `first_row`.
-    fn draw(&self, normals: [Vec3; 3], color: [u8; 3], first_row: usize, frame: Frame, samples: &mut [Sample]) {
+    fn draw(
+        &self,
+        normals: [Vec3; 3],
+        color: [u8; 3],
+        first_row: usize,
+        frame: Frame,
+        samples: &mut [Sample],
+    ) {
         if self.doubled == 0.0 || !self.doubled.is_finite() {
             return;
         }

@@ -104,7 +104,8 @@ impl Stage<'_> {
             let (left, right) = (line.iter().position(is_shape)?, line.iter().rposition(is_shape)?);
             Some([left as f32, row as f32, right as f32, row as f32])
         });
-        let join = |a: [f32; 4], b: [f32; 4]| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])];
+        let join =
+            |a: [f32; 4], b: [f32; 4]| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])];
         let [left, top, right, bottom] = boxes.reduce(|| [f32::MAX, f32::MAX, 0.0, 0.0], join);
         let reach = REACH * self.size / frame.pitch;
         [left - reach, top - reach, right + reach, bottom + reach]
@@ -116,7 +117,10 @@ impl<'a> Prepared<'a> {
         let turns = [0.0, 0.5, 0.75, 0.25].map(|jitter| {
             let turn = |i: usize| Vec2::from_angle(TAU * (i as f32 + jitter) / DIRECTIONS as f32);
             // Places spread evenly over a disc: each a golden angle on.
-            let tap = |i: usize| Vec2::from_angle(i as f32 * 2.399_963 + TAU * jitter) * ((i as f32 + 0.5) / TAPS as f32).sqrt();
+            let tap = |i: usize| {
+                Vec2::from_angle(i as f32 * 2.399_963 + TAU * jitter)
+                    * ((i as f32 + 0.5) / TAPS as f32).sqrt()
+            };
             (std::array::from_fn(turn), std::array::from_fn(tap))
         });
         let (seen, lit) = (stage.seen.relief(RAYS), stage.lit.relief(1));

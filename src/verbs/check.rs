@@ -82,8 +82,11 @@ fn tell_findings(report: &mut Report, validity: &Validity) {
     let faults: Vec<Fault> = Fault::ALL.into_iter().filter(|&fault| validity.count(fault) > 0).collect();
     let incomplete = validity.crossings.as_ref().is_some_and(|crossings| !crossings.complete);
     report.found = incomplete || faults.iter().any(|&fault| is_serious(fault));
-    let first = |fault| validity.findings().find(|f| f.fault == fault).map_or(String::new(), Finding::to_string);
-    for (&fault, word) in faults.iter().map(|fault| (fault, if is_serious(*fault) { "problem" } else { "remark" })) {
+    let first =
+        |fault| validity.findings().find(|f| f.fault == fault).map_or(String::new(), Finding::to_string);
+    for (&fault, word) in
+        faults.iter().map(|fault| (fault, if is_serious(*fault) { "problem" } else { "remark" }))
+    {
         report.line(format!("{word:<15} {} × {}", validity.count(fault), first(fault)));
     }
     if incomplete {
@@ -97,7 +100,7 @@ fn tell_findings(report: &mut Report, validity: &Validity) {
     report.put("oriented", validity.is_oriented());
     report.put("ok", !report.found);
     let findings = faults.iter().map(|&fault| {
-        let places = validity.findings().filter(|f| f.fault == fault).map(|f| place(f));
+        let places = validity.findings().filter(|f| f.fault == fault).map(place);
         json!({
             "fault": format!("{fault:?}"),
             "what": fault.to_string(),

@@ -46,7 +46,12 @@ fn write_scene(args: &ConvertArgs, scene: &Scene, job: &mut Job, report: &mut Re
     Ok(())
 }
 
-fn write_mesh(args: &ConvertArgs, loaded: &Loaded, job: &mut Job, report: &mut Report) -> Result<(), Failure> {
+fn write_mesh(
+    args: &ConvertArgs,
+    loaded: &Loaded,
+    job: &mut Job,
+    report: &mut Report,
+) -> Result<(), Failure> {
     if args.resolution.cell.is_some() || args.resolution.cells.is_some() {
         let what = "a mesh, which keeps its triangles; --cell and --cells are for scenes";
         return Err(Failure::of(&args.input, what));

@@ -23,8 +23,10 @@ pub fn run(args: &RenderArgs, job: &mut Job) -> Result<Report, Failure> {
     };
     let settings = Settings { view: args.view, size: args.size, background: args.background };
     let pixels = render::picture(&subject, &settings, job)?;
-    let pixels = pixels.ok_or_else(|| Failure::of(&args.input, "there is no solid to see: it is empty or muted"))?;
-    let bytes = job.stage("encode", |_| render::png(&pixels, args.size).map_err(|e| Failure::of(&args.output, e)))?;
+    let pixels =
+        pixels.ok_or_else(|| Failure::of(&args.input, "there is no solid to see: it is empty or muted"))?;
+    let bytes =
+        job.stage("encode", |_| render::png(&pixels, args.size).map_err(|e| Failure::of(&args.output, e)))?;
     job.write(&args.output, &bytes)?;
     let [width, height] = args.size;
     report.put("output", args.output.display().to_string());

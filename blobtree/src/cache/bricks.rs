@@ -21,6 +21,9 @@ type Samples = [f32; SIDE * SIDE * SIDE];
 /// the field is promised to stay within 0.01.
 const TOLERANCE: f32 = 0.004;
 
+/// Interpolated places are all on one piece.
+const CACHED_PIECE: u32 = 0x5eed_cace;
+
 /// Most bricks that one cache keeps: some 200 MiB. Where there are more, evaluation is exact.
 const MOST_BRICKS: usize = 1 << 18;
 
@@ -152,7 +155,7 @@ impl CacheReader {
                 let t = std::array::from_fn(|a| q[a] - S::of(cell[a] as f32));
                 let slope = trilinear(values, corner, t);
                 let gradient = slope.gradient.map(|g| g * S::of(1.0 / cache.spacing));
-                Some(Slope::new(slope.value, site.frame.pull_back(gradient)))
+                Some(Slope::new(slope.value, site.frame.pull_back(gradient)).on(CACHED_PIECE))
             }
         }
     }

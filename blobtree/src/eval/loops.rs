@@ -8,7 +8,7 @@ use super::places::{Places, ROW, Row};
 use super::scratch::Slopes;
 use crate::falloff::{cube, larger};
 use crate::leaf::Kernel;
-use crate::scalar::Slope;
+use crate::scalar::{Slope, both_pieces};
 use pulp::NullaryFnOnce;
 
 /// The value of a leaf at every place.
@@ -35,6 +35,8 @@ impl<K: Kernel, P: Places> NullaryFnOnce for KernelValues<'_, K, P> {
 /// Value and gradient of a leaf at every place.
 pub(super) struct KernelSlopes<'a, K, P> {
     pub kernel: &'a K,
+    /// Which of the tree's leaves it is.
+    pub number: u32,
     pub places: &'a P,
     pub out: &'a mut Slopes,
 }
@@ -45,16 +47,23 @@ impl<K: Kernel, P: Places> NullaryFnOnce for KernelSlopes<'_, K, P> {
     #[inline(always)]
     fn call(self) {
         let [gx, gy, gz] = &mut self.out.gradient;
-        let rows = self.out.value.iter_mut().zip(gx).zip(gy).zip(gz);
-        for (r, (((value, gx), gy), gz)) in rows.enumerate() {
+        let rows = self.out.value.iter_mut().zip(gx).zip(gy).zip(gz).zip(&mut self.out.piece);
+        for (r, ((((value, gx), gy), gz), piece)) in rows.enumerate() {
             let row = self.places.row(r);
             for i in 0..ROW {
                 let slope = self.kernel.at(row.place(i));
                 value[i] = slope.value;
                 [gx[i], gy[i], gz[i]] = slope.gradient;
+                piece[i] = leaf_piece(self.number, slope.piece);
             }
         }
     }
+}
+
+/// A leaf's piece, told from those of all other leaves.
+#[inline(always)]
+pub(super) fn leaf_piece(leaf: u32, piece: u32) -> u32 {
+    both_pieces(leaf.wrapping_add(1).wrapping_mul(0x9e37_79b1), piece)
 }
 
 /// `Σ (1 − x[i] − y[j] − z[k])₊³` over tables of x, y and z, for a brick.

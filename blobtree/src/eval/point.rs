@@ -1,9 +1,10 @@
 //! Programs run at one place, with any kind of number.
 
+use super::loops::leaf_piece;
 use super::program::{Instr, Op};
 use super::sampler::TreeSampler;
 use crate::combine::{self, Ricci};
-use crate::scalar::{Scalar, Slope, Triple};
+use crate::scalar::{Scalar, Slope, Triple, both_pieces};
 
 impl TreeSampler<'_> {
     /// The value of `instr` at `p` with its direction (see [`Want`](super::slopes::Want)). The same formulas
@@ -14,12 +15,14 @@ impl TreeSampler<'_> {
             Op::Empty => Slope::constant(0.0),
             Op::Leaf(i) => {
                 self.evaluations += 1;
-                self.tree.leaves[i as usize].at(p)
+                let slope = self.tree.leaves[i as usize].at(p);
+                slope.on(leaf_piece(i, slope.piece))
             }
             Op::Warp(i) => {
                 let warped = self.tree.warps[i as usize].child_from_parent(p);
                 let inner = self.run_point(self.narrower.arena[first], warped.place);
-                Slope::new(inner.value, warped.pull_back(inner.gradient))
+                let piece = both_pieces(inner.piece, warped.piece);
+                Slope::new(inner.value, warped.pull_back(inner.gradient)).on(piece)
             }
             Op::Cache(i) => match self.readers[i as usize].read(&self.tree.caches[i as usize], p) {
                 Some(slope) => slope,

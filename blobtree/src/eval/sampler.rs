@@ -120,7 +120,8 @@ impl Sampler for TreeSampler<'_> {
             self.run_slopes(self.current(), &cloud, &mut slopes, Want::Gradient);
             for (at, sample) in samples.iter_mut().enumerate() {
                 let slope = slopes.get(at / ROW, at % ROW);
-                *sample = Sample { value: slope.value, gradient: Vec3::from_array(slope.gradient) };
+                let gradient = Vec3::from_array(slope.gradient);
+                *sample = Sample { value: slope.value, gradient, piece: slope.piece };
             }
             self.scratch.give_slopes(slopes);
             self.scratch.give_cloud(cloud);

@@ -11,6 +11,7 @@ pub(crate) type Values = Vec<[f32; ROW]>;
 pub(crate) struct Slopes {
     pub value: Values,
     pub gradient: [Values; 3],
+    pub piece: Vec<[u32; ROW]>,
 }
 
 impl Slopes {
@@ -19,17 +20,19 @@ impl Slopes {
         for along in &mut self.gradient {
             along.resize(rows, [0.0; ROW]);
         }
+        self.piece.resize(rows, [0; ROW]);
     }
 
     #[inline(always)]
     pub fn get(&self, r: usize, i: usize) -> Slope<f32> {
         let [x, y, z] = &self.gradient;
-        Slope::new(self.value[r][i], [x[r][i], y[r][i], z[r][i]])
+        Slope::new(self.value[r][i], [x[r][i], y[r][i], z[r][i]]).on(self.piece[r][i])
     }
 
     #[inline(always)]
     pub fn set(&mut self, r: usize, i: usize, slope: Slope<f32>) {
         self.value[r][i] = slope.value;
+        self.piece[r][i] = slope.piece;
         for (along, x) in self.gradient.iter_mut().zip(slope.gradient) {
             along[r][i] = x;
         }

@@ -7,7 +7,7 @@ use super::sampler::TreeSampler;
 use super::scratch::Slopes;
 use crate::combine::{self, Ricci};
 use crate::leaf::with_kernel;
-use crate::scalar::{Jet, Slope};
+use crate::scalar::{Jet, Slope, both_pieces};
 
 /// What goes with the value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl TreeSampler<'_> {
                 self.evaluations += (places.rows() * ROW) as u64;
                 let (arch, tree) = (self.arch, self.tree);
                 let leaf = &tree.leaves[i as usize];
-                with_kernel!(leaf, kernel => arch.dispatch(KernelSlopes { kernel, places, out }));
+                with_kernel!(leaf, kernel => arch.dispatch(KernelSlopes { kernel, number: i, places, out }));
             }
             Op::Warp(i) => self.warped_slopes(i, first, places, out, want),
             Op::Cache(i) => self.cached_slopes(i, first, places, out, want),
@@ -95,7 +95,8 @@ impl TreeSampler<'_> {
             for i in 0..ROW {
                 let slope = out.get(r, i);
                 let warped = warp.child_from_parent(row.place(i));
-                out.set(r, i, Slope::new(slope.value, warped.pull_back(slope.gradient)));
+                let piece = both_pieces(slope.piece, warped.piece);
+                out.set(r, i, Slope::new(slope.value, warped.pull_back(slope.gradient)).on(piece));
             }
         }
         self.scratch.give_cloud(cloud);
@@ -144,8 +145,8 @@ impl TreeSampler<'_> {
             for i in 0..ROW {
                 let [x, y, z] = row.place(i);
                 let p = [Jet::coordinate(x, 0), Jet::coordinate(y, 1), Jet::coordinate(z, 2)];
-                let jet = self.run_point(instr, p).value;
-                out.set(r, i, Slope::new(jet.value, jet.slope));
+                let jet = self.run_point(instr, p);
+                out.set(r, i, Slope::new(jet.value.value, jet.value.slope).on(jet.piece));
             }
         }
     }

@@ -79,8 +79,8 @@ impl Solid for Chain {
     #[inline(always)]
     fn distance<S: Scalar>(&self, q: Triple<S>) -> Slope<S> {
         let mut nearest = self.links[0].distance(q);
-        for link in &self.links[1..] {
-            let next = link.distance(q);
+        for (number, link) in self.links.iter().enumerate().skip(1) {
+            let next = link.distance(q).on(number as u32);
             if next.value.value() < nearest.value.value() {
                 nearest = next;
             }

@@ -47,7 +47,7 @@ impl Kernel for Import {
         let e = (d + S::of(self.falloff.core)).larger(S::of(0.0));
         let t = (S::of(1.0) - e * e * S::of(self.inv_reach2)).larger(S::of(0.0));
         let slope = S::of(-6.0 * self.inv_reach2) * t * t * e;
-        Slope::new(t * t * t, self.frame.pull_back(scaled(out, slope)))
+        Slope::new(t * t * t, self.frame.pull_back(scaled(out, slope))).on(nearest.triangle)
     }
 
     fn bound(&self, region: &Aabb) -> Interval {

@@ -40,11 +40,12 @@ impl Outline {
         self.convex
     }
 
-    /// From the nearest point of the filled polygon to `q`.
-    pub fn offset_in_plane<S: Scalar>(&self, q: [S; 2]) -> [S; 2] {
-        let (mut nearest, mut nearest2, mut inside) = ([S::of(0.0); 2], f32::INFINITY, false);
+    /// From the nearest point of the filled polygon to `q`, and the number of the edge on which it lies, from
+    /// 1; 0 inside.
+    pub fn offset_in_plane<S: Scalar>(&self, q: [S; 2]) -> ([S; 2], u32) {
+        let (mut nearest, mut nearest2, mut inside) = (([S::of(0.0); 2], 0), f32::INFINITY, false);
         let mut from = self.corners[self.corners.len() - 1];
-        for &to in &self.corners {
+        for (edge, &to) in (1..).zip(&self.corners) {
             let along = to - from;
             let p = [q[0] - S::of(from.x), q[1] - S::of(from.y)];
             let length2 = along.length_squared().max(1e-24);
@@ -53,7 +54,7 @@ impl Outline {
             let o = [p[0] - t * S::of(along.x), p[1] - t * S::of(along.y)];
             let d2 = o[0].value() * o[0].value() + o[1].value() * o[1].value();
             if d2 < nearest2 {
-                (nearest, nearest2) = (o, d2);
+                (nearest, nearest2) = ((o, edge), d2);
             }
             let (x, y) = (q[0].value(), q[1].value());
             if (from.y > y) != (to.y > y) && x < from.x + (y - from.y) / (to.y - from.y) * along.x {
@@ -61,6 +62,6 @@ impl Outline {
             }
             from = to;
         }
-        if inside { [S::of(0.0); 2] } else { nearest }
+        if inside { ([S::of(0.0); 2], 0) } else { nearest }
     }
 }

@@ -12,6 +12,12 @@ pub(crate) trait Skeleton: Send + Sync {
     /// From the nearest point of the skeleton to `q`.
     fn offset<S: Scalar>(&self, q: Triple<S>) -> Triple<S>;
 
+    /// Tells apart places between which the nearest point may jump.
+    #[inline(always)]
+    fn piece<S: Scalar>(&self, _q: Triple<S>) -> u32 {
+        0
+    }
+
     /// Bounds of the distance from the skeleton.
     fn distance_bound(&self, range: &Range) -> (f32, f32);
 
@@ -54,12 +60,13 @@ impl<T: Skeleton> PureSkeletal<T> {
 impl<T: Skeleton> Kernel for Skeletal<T> {
     #[inline(always)]
     fn at<S: Scalar>(&self, p: Triple<S>) -> Slope<S> {
-        let o = self.skeleton.offset(self.frame.apply(p));
+        let q = self.frame.apply(p);
+        let o = self.skeleton.offset(q);
         let d = dot(o, o).sqrt();
         let e = (d - S::of(self.full)).larger(S::of(0.0));
         let t = (S::of(1.0) - e * e * S::of(self.inv_reach2)).larger(S::of(0.0));
         let slope = S::of(-6.0 * self.inv_reach2) * t * t * e / d.larger(S::of(1e-12));
-        Slope::new(t * t * t, self.frame.pull_back(scaled(o, slope)))
+        Slope::new(t * t * t, self.frame.pull_back(scaled(o, slope))).on(self.skeleton.piece(q))
     }
 
     fn bound(&self, region: &Aabb) -> Interval {
@@ -75,10 +82,11 @@ impl<T: Skeleton> Kernel for Skeletal<T> {
 impl<T: Skeleton> Kernel for PureSkeletal<T> {
     #[inline(always)]
     fn at<S: Scalar>(&self, p: Triple<S>) -> Slope<S> {
-        let o = self.skeleton.offset(self.frame.apply(p));
+        let q = self.frame.apply(p);
+        let o = self.skeleton.offset(q);
         let t = (S::of(1.0) - dot(o, o) * S::of(self.inv_reach2)).larger(S::of(0.0));
         let slope = S::of(-6.0 * self.inv_reach2) * t * t;
-        Slope::new(t * t * t, self.frame.pull_back(scaled(o, slope)))
+        Slope::new(t * t * t, self.frame.pull_back(scaled(o, slope))).on(self.skeleton.piece(q))
     }
 
     fn bound(&self, region: &Aabb) -> Interval {
@@ -232,12 +240,17 @@ impl Skeleton for Circle {
 impl Skeleton for Outline {
     #[inline(always)]
     fn offset<S: Scalar>(&self, q: Triple<S>) -> Triple<S> {
-        let [x, y] = self.offset_in_plane([q[0], q[1]]);
+        let [x, y] = self.offset_in_plane([q[0], q[1]]).0;
         [x, y, q[2]]
     }
 
+    #[inline(always)]
+    fn piece<S: Scalar>(&self, q: Triple<S>) -> u32 {
+        if self.is_convex() { 0 } else { self.offset_in_plane([q[0], q[1]]).1 }
+    }
+
     fn distance_bound(&self, range: &Range) -> (f32, f32) {
-        let [x, y] = self.offset_in_plane([range.center.x, range.center.y]);
+        let [x, y] = self.offset_in_plane([range.center.x, range.center.y]).0;
         let middle = x.hypot(y).hypot(range.center.z);
         (larger(middle - range.radius(), 0.0) * (1.0 - 1e-5), (middle + range.radius()) * (1.0 + 1e-5))
     }

@@ -11,7 +11,7 @@ use glam::Vec3;
 /// A solid standing at the origin.
 pub(crate) trait Solid: Send + Sync {
     /// Signed distance to the surface (exact or a bound that keeps its zeros), below 0 inside, and its
-    /// gradient.
+    /// gradient; different pieces where the gradient may jump in between.
     fn distance<S: Scalar>(&self, q: Triple<S>) -> Slope<S>;
 
     /// Bounds of the signed distance.
@@ -43,7 +43,7 @@ impl<T: Solid> Kernel for Fallen<T> {
         let e = (d.value + S::of(self.core)).larger(S::of(0.0));
         let t = (S::of(1.0) - e * e * S::of(self.inv_reach2)).larger(S::of(0.0));
         let slope = S::of(-6.0 * self.inv_reach2) * t * t * e;
-        Slope::new(t * t * t, self.frame.pull_back(scaled(d.gradient, slope)))
+        Slope::new(t * t * t, self.frame.pull_back(scaled(d.gradient, slope))).on(d.piece)
     }
 
     fn bound(&self, region: &Aabb) -> Interval {
@@ -78,7 +78,8 @@ fn meet(a: (f32, f32), b: (f32, f32)) -> bool {
 fn slab<S: Scalar>(q: Triple<S>, axis: usize, half: f32) -> Slope<S> {
     let side = sign(q[axis]);
     let gradient = std::array::from_fn(|a| if a == axis { side } else { S::of(0.0) });
-    Slope::new(q[axis].abs() - S::of(half), gradient)
+    let piece = 2 * axis as u32 + if q[axis].value() < 0.0 { 1 } else { 2 };
+    Slope::new(q[axis].abs() - S::of(half), gradient).on(piece)
 }
 
 /// A box with sharp edges; the distance is the largest of those to the faces, so that edges stay sharp at
@@ -141,7 +142,7 @@ impl Solid for RoundBox {
         if length.value() > 0.0 {
             Slope::new(length - rounding, round)
         } else {
-            Slope::new(flat.value - rounding, flat.gradient)
+            Slope::new(flat.value - rounding, flat.gradient).on(flat.piece)
         }
     }
 
@@ -342,7 +343,7 @@ impl Solid for Ground {
         let plane = Slope::new(q[2], [S::of(0.0), S::of(0.0), S::of(1.0)]);
         let length = dot(q, q).sqrt();
         let inverse = S::of(1.0) / length.larger(S::of(1e-12));
-        farther(plane, Slope::new(length - S::of(self.extent), scaled(q, inverse)))
+        farther(plane, Slope::new(length - S::of(self.extent), scaled(q, inverse)).on(1))
     }
 
     fn distance_bound(&self, range: &Range) -> (f32, f32) {

@@ -1,8 +1,9 @@
 //! Mesh files: STL, OBJ, PLY and 3MF to and from any [`Read`] or [`Write`].
 //!
 //! Reach for it whenever triangles enter or leave the program. [`read`] believes the content rather than the
-//! name, converts to millimetres, and reports what it noticed; [`write()`] refuses a mesh that no reader could
-//! take back. Neither opens files, repairs meshes, or judges whether they print.
+//! name, converts to millimetres, joins what rounding took apart ([`close_cracks`]), and reports what it noticed;
+//! [`write()`] refuses a mesh that no reader could take back. Neither opens files, fills holes, or judges whether
+//! meshes print.
 //!
 //! Files come from strangers: no input panics, hangs, or makes a reader allocate by an announced count. What
 //! is allocated grows with what was actually read, and [`ReadLimits`] bounds that.
@@ -23,6 +24,7 @@
 //! ```
 
 mod builder;
+mod cracks;
 mod error;
 mod notice;
 mod number;
@@ -41,6 +43,7 @@ use std::path::Path;
 
 use crate::Mesh;
 
+pub use cracks::close_cracks;
 pub use error::{Place, ReadError, WriteError};
 pub use notice::Notice;
 pub use weld::weld;
@@ -167,8 +170,22 @@ pub struct Loaded {
 /// - **Units:** millimetres; formats without a unit are taken to be in millimetres.
 /// - **Order:** vertices and triangles in file order. STL corners that are bit-identical (`-0 = 0`) are welded in
 ///   order of first appearance; the other formats keep their own indices ([`weld()`] joins them on request).
-/// - **Errors:** [`ReadError`], with the place. **Cost:** O(file), memory by what is read, within `limits`.
-pub fn read<R: Read + Seek>(mut reader: R, named: Format, limits: &ReadLimits) -> Result<Loaded, ReadError> {
+/// - **Cracks:** where that closes edges, vertices are joined as in [`close_cracks`], with a
+///   [`Notice::JoinedVertices`]. [`read_as_written`] leaves them.
+/// - **Errors:** [`ReadError`], with the place. **Cost:** O(file), and sorting the edges of a mesh that is open;
+///   memory by what is read, within `limits`.
+pub fn read<R: Read + Seek>(reader: R, named: Format, limits: &ReadLimits) -> Result<Loaded, ReadError> {
+    let mut loaded = read_as_written(reader, named, limits)?;
+    loaded.notices.extend(close_cracks(&mut loaded.mesh));
+    Ok(loaded)
+}
+
+/// As [`read`], but cracks stay open: every format but STL comes back with the vertices that it has.
+pub fn read_as_written<R: Read + Seek>(
+    mut reader: R,
+    named: Format,
+    limits: &ReadLimits,
+) -> Result<Loaded, ReadError> {
     let length = reader.seek(SeekFrom::End(0))?;
     reader.rewind()?;
     if length > limits.max_bytes {
@@ -198,8 +215,8 @@ pub fn read<R: Read + Seek>(mut reader: R, named: Format, limits: &ReadLimits) -
 
 /// Writes a mesh, and to 3MF its attachments too.
 ///
-/// - **Promises:** the same mesh gives the same bytes; [`read`] gives the same mesh back (STL: the same triangles,
-///   welded). Text holds the shortest numbers that read back exactly.
+/// - **Promises:** the same mesh gives the same bytes; [`read_as_written`] gives the same mesh back (STL: the same
+///   triangles, welded), and so does [`read`] if it is closed. Text holds the shortest numbers that read back exactly.
 /// - **Units:** millimetres, which 3MF says and the others cannot.
 /// - **Errors:** [`WriteError`]; a mesh with a coordinate that is not finite, an index out of range, a triangle
 ///   that uses a vertex twice, or no triangles is refused before the first byte. Whether it is closed is not asked.

@@ -62,6 +62,19 @@ pub enum Notice {
         /// The first of them.
         first: Place,
     },
+    /// Vertices at open edges were joined with others in the same place, which closed edges.
+    JoinedVertices {
+        /// How many are gone.
+        count: u64,
+        /// How far apart they were at most, mm; 0 if in exactly the same place.
+        within: f64,
+        /// How many triangles went because they lost a side.
+        collapsed: u64,
+        /// How many edges were open.
+        open: u64,
+        /// How many edges still are.
+        left: u64,
+    },
 }
 
 impl fmt::Display for Notice {
@@ -99,6 +112,21 @@ impl fmt::Display for Notice {
                 f,
                 "{count} polygons were cut into fans, which is wrong if they are not convex; the first is at {first}"
             ),
+            Self::JoinedVertices { count, within, collapsed, open, left } => {
+                if *within > 0.0 {
+                    write!(f, "{count} vertices within {within:.1e} mm of another were joined with it")?;
+                } else {
+                    write!(f, "{count} vertices in exactly the same place as another were joined with it")?;
+                }
+                match left {
+                    0 => write!(f, ", which closed all {open} open edges")?,
+                    _ => write!(f, ", which left {left} of {open} open edges")?,
+                }
+                match collapsed {
+                    0 => Ok(()),
+                    _ => write!(f, "; {collapsed} triangles that lost a side by it were left out"),
+                }
+            }
         }
     }
 }

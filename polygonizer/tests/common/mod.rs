@@ -44,7 +44,7 @@ impl Solid {
     fn at(&self, p: Vec3) -> Sample {
         let (distance, direction) = (self.distance)(p);
         let (value, slope) = self.falloff(distance);
-        Sample { value, gradient: direction * slope }
+        Sample { value, gradient: direction * slope, ..Sample::default() }
     }
 }
 
@@ -213,7 +213,8 @@ pub fn cone(base: Vec3, radius: f32, height: f32) -> Solid {
         let normal = (flat.normalize_or_zero() * height + Vec3::Z * radius) / slant;
         if side > -p.z { (side, normal) } else { (-p.z, Vec3::NEG_Z) }
     };
-    let bounds = Aabb { min: base - Vec3::new(radius, radius, 0.0), max: base + Vec3::new(radius, radius, height) };
+    let bounds =
+        Aabb { min: base - Vec3::new(radius, radius, 0.0), max: base + Vec3::new(radius, radius, height) };
     Solid::new(bounds, true, Box::new(distance))
 }
 
@@ -296,7 +297,8 @@ impl Sampler for NoiseSampler<'_> {
     fn samples(&mut self, points: &[Vec3], samples: &mut [Sample]) {
         for (&p, sample) in points.iter().zip(samples) {
             let mut random = Random(u64::from(p.x.to_bits()) << 32 | u64::from(p.z.to_bits()));
-            *sample = Sample { value: self.0.at(p), gradient: random.direction() * random.unit() };
+            let gradient = random.direction() * random.unit();
+            *sample = Sample { value: self.0.at(p), gradient, ..Sample::default() };
         }
     }
 }
