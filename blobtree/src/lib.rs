@@ -46,7 +46,7 @@
 //!
 //! # Ask why
 //!
-//! [`explain`] tells every node's part in the value at a place; [`pick`] finds what a ray meets and which
+//! [`explain()`] tells every node's part in the value at a place; [`pick()`] finds what a ray meets and which
 //! primitive made it, through holes too.
 //!
 //! ```

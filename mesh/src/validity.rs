@@ -355,10 +355,10 @@ fn check_bodies(mesh: &Mesh, edges: &EdgeTable, report: &mut Validity) {
     }
     let bvh = Bvh::new(mesh);
     let winding = Winding::new(&bvh);
-    let samples = samples_of(mesh, &components, bodies.len());
-    for (body, samples) in bodies.iter().zip(&samples).filter(|(body, _)| body.closed) {
-        let around = wrapped_by_others(&bvh, &winding, body, samples);
-        let place = samples.first().map_or(Vec3::ZERO, |s| s.1);
+    let spots = spots_of(mesh, &components, bodies.len());
+    for (body, spots) in bodies.iter().zip(&spots).filter(|(body, _)| body.closed) {
+        let around = wrapped_by_others(&bvh, &winding, body, spots);
+        let place = spots.first().map_or(Vec3::ZERO, |s| s.middle);
         let element = Element::Body(body.first_triangle);
         if body.volume < 0.0 && around >= 1 {
             report.voids += 1;
@@ -370,29 +370,46 @@ fn check_bodies(mesh: &Mesh, edges: &EdgeTable, report: &mut Validity) {
     }
 }
 
-/// Points in the middle of a few triangles of every part, largest triangle first.
-fn samples_of(mesh: &Mesh, components: &Components, count: usize) -> Vec<Vec<(f64, Vec3)>> {
-    const SAMPLES: usize = 8;
-    let mut samples: Vec<Vec<(f64, Vec3)>> = vec![Vec::new(); count];
+/// A place on a part's surface: the middle of a triangle, and a step off it along its normal, well beyond what
+/// rounding can move the middle.
+#[derive(Clone, Copy)]
+struct Spot {
+    area: f64,
+    middle: Vec3,
+    step: Vec3,
+}
+
+/// Spots on a few triangles of every part, largest triangle first.
+fn spots_of(mesh: &Mesh, components: &Components, count: usize) -> Vec<Vec<Spot>> {
+    const SPOTS: usize = 8;
+    let mut spots: Vec<Vec<Spot>> = vec![Vec::new(); count];
     for (&triangle, &label) in mesh.triangles.iter().zip(&components.labels) {
         let Some(corners) = mesh.corners(triangle) else { continue };
         let [a, b, c] = corners.map(Vec3::as_dvec3);
-        let area = (b - a).cross(c - a).length();
-        let list = &mut samples[label as usize];
-        let at = list.partition_point(|s| s.0 >= area);
-        if at < SAMPLES {
-            list.insert(at, (area, middle(corners)));
-            list.truncate(SAMPLES);
+        let normal = (b - a).cross(c - a);
+        let area = normal.length();
+        let list = &mut spots[label as usize];
+        let at = list.partition_point(|s| s.area >= area);
+        if at < SPOTS {
+            let largest = corners.iter().fold(0.0, |m: f32, p| m.max(p.abs().max_element()));
+            let step = normal.normalize_or_zero().as_vec3() * (8.0 * f32::EPSILON * largest);
+            list.insert(at, Spot { area, middle: middle(corners), step });
+            list.truncate(SPOTS);
         }
     }
-    samples
+    spots
 }
 
-/// How many times the other parts wrap around a closed part. On its own surface the part itself counts one half; where
-/// another part touches, the sum is no whole number plus a half, and another sample is asked.
-fn wrapped_by_others(bvh: &Bvh, winding: &Winding, body: &Body, samples: &[(f64, Vec3)]) -> i64 {
+/// How many times the other parts wrap around a closed part. Just outside and just inside of its own surface the part
+/// itself counts one half in the mean; where another part touches, the sum is no whole number plus a half, and another
+/// spot is asked.
+fn wrapped_by_others(bvh: &Bvh, winding: &Winding, body: &Body, spots: &[Spot]) -> i64 {
     let own = if body.volume < 0.0 { -0.5 } else { 0.5 };
-    let others: Vec<f64> = samples.iter().map(|&(_, p)| winding.at(bvh, p) - own).collect();
+    let around = |spot: &Spot| {
+        let sides = [spot.middle + spot.step, spot.middle - spot.step].map(|p| winding.at(bvh, p));
+        (sides[0] + sides[1]) / 2.0 - own
+    };
+    let others: Vec<f64> = spots.iter().map(around).collect();
     let clear = others.iter().find(|w| (*w - w.round()).abs() < 0.2);
     clear.or(others.first()).map_or(0, |w| w.round() as i64)
 }
@@ -400,7 +417,7 @@ fn wrapped_by_others(bvh: &Bvh, winding: &Winding, body: &Body, samples: &[(f64,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::{cuboid, torus, uv_sphere};
+    use crate::shapes::{cuboid, ico_sphere, torus, uv_sphere};
 
     fn report(mesh: &Mesh) -> Validity {
         mesh.validity(SelfIntersections::Search)
@@ -496,6 +513,20 @@ mod tests {
         void.flip();
         touching.append(&void);
         assert_eq!((report(&touching).voids, report(&touching).findings().count()), (1, 0));
+    }
+
+    #[test]
+    fn small_turned_bodies_far_away_are_not_taken_for_superfluous() {
+        for i in 0..40 {
+            let (sin, cos) = (i as f32).sin_cos();
+            let away = Vec3::new(400.0 * cos, 300.0 * sin, 170.0 - 9.0 * i as f32);
+            let mut mesh = ico_sphere(Vec3::ZERO, 12.0, 2);
+            mesh.append(&ico_sphere(away, 1.0, 1));
+            mesh.append(&ico_sphere(-away, 1.0, 1));
+            assert_eq!(faults(&mesh), [], "away by {away}");
+            mesh.append(&ico_sphere(away, 0.3, 1));
+            assert_eq!(faults(&mesh), [(Fault::RedundantBody, 1)], "away by {away}");
+        }
     }
 
     #[test]

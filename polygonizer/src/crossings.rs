@@ -24,6 +24,8 @@ pub(crate) struct Crossing {
     miss: f32,
     /// The surface here.
     pub plane: Plane,
+    /// The smooth piece of the field here, see [`Sample::piece`].
+    piece: u32,
     wanted: bool,
 }
 
@@ -39,6 +41,7 @@ impl Crossing {
         self.bracket[side] = self.t;
         self.miss = (ISO - sample.value) / (sample.gradient[usize::from(self.axis)] * spacing);
         self.plane = Plane { point: self.point(spacing), normal: outward(sample) };
+        self.piece = sample.piece;
     }
 
     fn advance(&mut self) {
@@ -99,6 +102,7 @@ impl Crossings {
             start_is_inside: is_inside(grid.value(at)),
             miss: 0.0,
             plane: Plane { point: Vec3::ZERO, normal: Vec3::ZERO },
+            piece: 0,
             wanted: false,
         };
         batch.points.push(crossing.point(grid.brick.spacing));
@@ -108,6 +112,12 @@ impl Crossings {
     /// The crossings of a site.
     pub fn of(&self, site: Site) -> impl Iterator<Item = &Crossing> {
         site.crossed_edges().map(move |edge| &self.all[self.number(site, edge)])
+    }
+
+    /// Whether all crossings of a site are known to lie on one smooth piece.
+    pub fn are_one_piece(&self, site: Site) -> bool {
+        let mut pieces = self.of(site).map(|crossing| crossing.piece);
+        pieces.next().is_some_and(|first| first != 0 && pieces.all(|piece| piece == first))
     }
 
     fn number(&self, site: Site, edge: usize) -> usize {

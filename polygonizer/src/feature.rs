@@ -147,9 +147,12 @@ impl Finder<'_> {
         candidates.clear();
         planes.clear();
         for (number, &site) in sites.iter().enumerate() {
-            near.clear();
-            near.extend(crossings.of(site).map(|c| c.plane));
-            if turn(near) < SAME_FACE || crossings.of(site).any(|c| c.is_off(TRUSTED_MISS)) {
+            let may_turn = !crossings.are_one_piece(site) && {
+                near.clear();
+                near.extend(crossings.of(site).map(|c| c.plane));
+                turn(near) < SAME_FACE
+            };
+            if may_turn || crossings.of(site).any(|c| c.is_off(TRUSTED_MISS)) {
                 candidates.push(Candidate {
                     site: number as u32,
                     planes: [0; 2],
@@ -167,9 +170,10 @@ impl Finder<'_> {
         crossings.refine(&mut **sampler, wanted, *spacing, CROSSING_TOLERANCE, batch);
         candidates.retain_mut(|candidate| {
             let first = planes.len();
-            planes.extend(crossings.of(sites[candidate.site as usize]).map(|c| c.plane));
+            let site = sites[candidate.site as usize];
+            planes.extend(crossings.of(site).map(|c| c.plane));
             candidate.planes = [first, planes.len()];
-            let sharp = turn(&planes[first..]) < SAME_FACE;
+            let sharp = !crossings.are_one_piece(site) && turn(&planes[first..]) < SAME_FACE;
             if !sharp {
                 planes.truncate(first);
                 smooth.push(candidate.site);

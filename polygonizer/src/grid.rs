@@ -34,6 +34,7 @@ impl Site {
 }
 
 /// The positions of the set bits.
+#[inline]
 pub(crate) fn bits(mut word: u16) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = word.trailing_zeros();
@@ -122,6 +123,7 @@ impl Grid {
 
     /// Where the surface crosses the lattice edge from sample `at` along `axis` if the field is linear
     /// there, from 0 to 1 along it.
+    #[inline]
     pub fn linear_crossing(&self, at: [usize; 3], axis: usize) -> f32 {
         let first = sample_index(at);
         let (from, to) = (self.values[first], self.values[first + [1, BRICK, BRICK * BRICK][axis]]);
@@ -189,6 +191,7 @@ impl Grid {
 }
 
 /// The sample at corner `number` of `cell`.
+#[inline]
 pub(crate) fn corner(cell: [u8; 3], number: usize) -> [usize; 3] {
     std::array::from_fn(|a| usize::from(cell[a]) + (number >> a & 1))
 }

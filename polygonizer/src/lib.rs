@@ -6,7 +6,7 @@
 //! # use blobtree::{Aabb, BRICK, BRICK_SAMPLES, Brick, Field, Interval, Sample, Sampler};
 //! # use glam::Vec3;
 //! # struct Ball;
-//! # impl Ball { fn at(p: Vec3) -> Sample { Sample { value: (1.0 - 0.05 * p.length()).max(0.0), gradient: p * -0.05 / p.length().max(1e-9) } } }
+//! # impl Ball { fn at(p: Vec3) -> Sample { Sample { value: (1.0 - 0.05 * p.length()).max(0.0), gradient: p * -0.05 / p.length().max(1e-9), piece: 1 } } }
 //! # impl Field for Ball {
 //! #     fn support(&self) -> Aabb { Aabb::around(Vec3::ZERO, Vec3::splat(20.0)) }
 //! #     fn sampler(&self) -> Box<dyn Sampler + '_> { Box::new(BallSampler) }

@@ -67,7 +67,7 @@ pub(crate) const fn edge_start(edge: usize) -> usize {
 /// The corners of a face, as bits.
 pub(crate) const fn face_corners(face: usize) -> u8 {
     let low = [0b0101_0101, 0b0011_0011, 0b0000_1111][face / 2];
-    if face % 2 == 0 { low } else { !low }
+    if face.is_multiple_of(2) { low } else { !low }
 }
 
 /// Whether all corners of `face` are on the same side of the surface.

@@ -21,7 +21,7 @@ pub(crate) fn fitting_alone(around: &Around<&BrickSurface>, spacing: f32) -> Vec
     let alone = |bold: &Bold| {
         let fits = |place: &&Vertex| fits(around, own, bold, place, |_| None, spacing);
         let places: Vec<Vertex> = bold.places.iter().filter(fits).copied().collect();
-        (!places.is_empty()).then(|| Bold { places, ..*bold })
+        (!places.is_empty()).then_some(Bold { places, ..*bold })
     };
     own.bold.iter().filter_map(alone).collect()
 }

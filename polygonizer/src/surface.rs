@@ -221,7 +221,7 @@ impl Surface {
                 return Err(PolygonizeError::Cancelled);
             }
             let number = done.fetch_add(1, Ordering::Relaxed);
-            if number % BRICKS_PER_BLOCK == 0 {
+            if number.is_multiple_of(BRICKS_PER_BLOCK) {
                 options.report(number as f32 / tasks as f32);
             }
             let Some(key) = range.in_block(blocks[task / BRICKS_PER_BLOCK], task % BRICKS_PER_BLOCK) else {

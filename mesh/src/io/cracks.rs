@@ -2,7 +2,7 @@
 //!
 //! STL knows no vertices, so a program that computes a corner once for every triangle, or rounds it on the way,
 //! writes corners that differ in their last bits; OBJ and PLY files split vertices along texture seams. Slicers
-//! take such meshes as closed, and so does [`close_cracks`]. It moves vertices by rounding errors only: holes
+//! take such meshes for closed, and so does [`close_cracks`]. It moves vertices by rounding errors only: holes
 //! stay open, and what is closed already is not touched, however near to something else it lies.
 
 use std::hash::{BuildHasher, RandomState};
@@ -16,9 +16,9 @@ use super::weld::Welder;
 use crate::edges::{EdgeTable, is_collapsed};
 use crate::{Bounds, Mesh};
 
-/// Distances to try, in units in the last place of the largest coordinate: two corners one unit off along each
-/// axis lie up to 3.5 units apart, a few operations in single precision cost some more, and text of six digits
-/// (up to 17 units a step) needs the last.
+/// Distances to try, in units in the last place of the largest coordinate. Two corners that are one unit off along
+/// each axis lie up to 3.5 units apart; text of seven digits, as most STL files have, has steps of up to 8.4 units
+/// along each axis; and what a program computed in several steps of single precision needs the last.
 const UNITS: [f64; 3] = [4.0, 16.0, 64.0];
 
 /// The largest distance, as a share of the box's longest side: a part that lies far from the origin has coarse
@@ -29,12 +29,12 @@ const LARGEST_SHARE: f64 = 1e-5;
 ///
 /// - **In/out:** an edge is open where its triangles do not run along it equally often in both directions. Only
 ///   vertices of such edges are joined, each to the nearest one that stays, the lower index where two are equally
-///   near. Triangles that lose a side by it go, and so do the vertices joined; the others keep their order.
+///   near. Triangles that lose a side by it go, and so do the vertices joined; the rest keep their order.
 /// - **Units:** four distances are tried, 0 and about 2.5e-7, 1e-6 and 4e-6 of the box's longest side (more for a
 ///   part far from the origin, at most 1e-5). The one that leaves the least open wins, the smallest if several do.
 /// - **Promises:** strictly fewer open edges, or no change and no notice. Edges that merely vanish with a triangle
-///   do not count as closed. The same mesh gives the same result; doing it again changes nothing in all but
-///   contrived meshes. Indices out of range are left alone.
+///   do not count as closed, and no mesh loses all its triangles. The same
+///   mesh gives the same result. Indices out of range are left alone.
 /// - **Cost:** O(triangles) for a mesh that is closed; sorting the edges of one that is not.
 pub fn close_cracks(mesh: &mut Mesh) -> Option<Notice> {
     if is_balanced(mesh) {
@@ -72,7 +72,7 @@ fn is_balanced(mesh: &Mesh) -> bool {
             if forward { sum.wrapping_add(number) } else { sum.wrapping_sub(number) }
         })
     };
-    mesh.triangles.par_iter().map(runs).reduce(|| 0, u64::wrapping_add) == 0
+    mesh.triangles.iter().map(runs).fold(0, u64::wrapping_add) == 0
 }
 
 /// A bijection that leaves no pattern (the last step of SplitMix64).
@@ -91,7 +91,7 @@ fn sides([a, b, c]: [u32; 3]) -> [([u32; 2], bool); 3] {
 /// What is wrong with a mesh along its open edges.
 #[derive(Clone, Copy)]
 struct Left {
-    /// Sides without a partner, and sides beyond two at an edge: 0 where all is closed and manifold.
+    /// Sides without a partner, sides beyond two at an edge, and what was lost: 0 where all is closed and manifold.
     faults: u64,
     /// Edges along which triangles do not run equally often in both directions.
     open: usize,
@@ -128,25 +128,40 @@ impl Seam {
         let before = Left { faults: 0, open: 0 };
         let mut seam = Self { vertices, is_member, triangles, faulty: Vec::new(), before };
         let mut faulty = Vec::new();
-        seam.before = seam.count(|v| v, |ends, faults| faulty.push((ends, faults)));
+        (seam.before, _) = seam.count(
+            |v| v,
+            |ends, faults| {
+                if faults > 0 {
+                    faulty.push((ends, faults));
+                }
+            },
+        );
         seam.faulty = faulty;
         seam
     }
 
-    /// What is left when every vertex is joined to the one that `joined` says. Edges that vanish keep their faults,
-    /// so that losing a triangle is not taken for closing a crack.
+    /// What is left when every vertex is joined to the one that `joined` says. Losing a triangle is not closing a
+    /// crack: edges that vanish keep their faults, and every triangle that goes is one more.
     fn after(&self, joined: &[u32]) -> Left {
         let to = |v: u32| joined[v as usize];
-        let vanished = self.faulty.iter().filter(|([a, b], _)| to(*a) == to(*b));
-        let vanished: u64 = vanished.map(|(_, faults)| faults).sum();
-        let left = self.count(to, |_, _| {});
-        Left { faults: left.faults + vanished, ..left }
+        let mut edges = Vec::new();
+        let (mut left, collapsed) = self.count(to, |ends, _| edges.push(ends));
+        left.faults += collapsed;
+        for &([a, b], faults) in &self.faulty {
+            let (a, b) = (to(a), to(b));
+            if edges.binary_search(&[a.min(b), a.max(b)]).is_err() {
+                left.faults += faults;
+            }
+        }
+        left
     }
 
-    /// Counts the faults of edges between members, and shows each edge that has some.
-    fn count(&self, joined: impl Fn(u32) -> u32, mut show: impl FnMut([u32; 2], u64)) -> Left {
+    /// Counts the faults of edges between members, shows each edge with its faults in ascending order, and says
+    /// how many triangles collapse.
+    fn count(&self, joined: impl Fn(u32) -> u32, mut show: impl FnMut([u32; 2], u64)) -> (Left, u64) {
         let is_inside = |(ends, _): &([u32; 2], bool)| ends.iter().all(|&v| self.is_member[v as usize]);
         let kept = self.triangles.iter().map(|corners| corners.map(&joined)).filter(|&t| !is_collapsed(t));
+        let collapsed = self.triangles.len() - kept.clone().count();
         let mut all: Vec<_> = kept.flat_map(sides).filter(is_inside).collect();
         all.par_sort_unstable();
         let mut left = Left { faults: 0, open: 0 };
@@ -154,13 +169,11 @@ impl Seam {
             let forward = edge.iter().filter(|(_, forward)| *forward).count();
             let balance = forward.abs_diff(edge.len() - forward);
             let faults = (balance + edge.len().saturating_sub(2)) as u64;
-            if faults > 0 {
-                left.faults += faults;
-                left.open += usize::from(balance != 0);
-                show(edge[0].0, faults);
-            }
+            left.faults += faults;
+            left.open += usize::from(balance != 0);
+            show(edge[0].0, faults);
         }
-        left
+        (left, collapsed as u64)
     }
 }
 

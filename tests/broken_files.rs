@@ -1,0 +1,91 @@
+//! However broken a file is, every verb ends soon, in little memory, and in words.
+
+#![cfg(target_os = "linux")]
+
+#[path = "broken_files/breakage.rs"]
+mod breakage;
+mod common;
+
+use breakage::{Broken, all};
+use common::{Folder, text_of};
+use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// All that a process may map, so that its peak in memory is less: 500 MB.
+const MEMORY_KIB: u32 = 500_000_000 / 1024;
+/// Processor time for one file; beyond it the system ends the program. Unlike time on the clock, other work on
+/// the machine does not use it up.
+const CPU_SECONDS: u32 = 2;
+/// On the clock, on a machine that has other things to do.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+#[test]
+fn three_hundred_broken_files_end_in_an_error_that_names_the_file() {
+    let folder = Folder::new();
+    let files = all(&folder);
+    assert!(files.len() >= 300, "only {}", files.len());
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut slowest = (Duration::ZERO, String::new());
+        while let Some(file) = files.get(next.fetch_add(1, Ordering::Relaxed)) {
+            for verb in file.verbs {
+                let took = try_file(&folder, file, verb);
+                slowest = slowest.max((took, format!("{verb} {}", file.name)));
+            }
+        }
+        slowest
+    };
+    let slowest = std::thread::scope(|scope| {
+        let workers = [(); 2].map(|()| scope.spawn(work));
+        let finished = workers.map(|worker| worker.join().unwrap_or_else(|e| std::panic::resume_unwind(e)));
+        finished.into_iter().max()
+    });
+    println!("{} files, the slowest: {slowest:?}", files.len());
+    let left: Vec<String> = folder.names().into_iter().filter(|name| name.starts_with("out-")).collect();
+    assert!(left.is_empty(), "half-written or left over: {left:?}");
+}
+
+/// Runs a verb on a file, judges how it ended, and says how long that took.
+fn try_file(folder: &Folder, file: &Broken, verb: &str) -> Duration {
+    let name = file.name.as_str();
+    let out = format!("out-{verb}-{name}.{}", if verb == "render" { "png" } else { "stl" });
+    let rest: &[&str] = match verb {
+        "eval" => &["--at", "0,0,5", "--explain"],
+        "mesh" => &["-o", &out, "--cells", "16"],
+        "convert" => &[&out, "--cells", "16"],
+        "render" => &["-o", &out, "--size", "64x48"],
+        _ => &["--cells", "16"],
+    };
+    let limits = format!("ulimit -v {MEMORY_KIB}; ulimit -t {CPU_SECONDS}; exec \"$@\"");
+    let trullo = folder.command(&[&[verb, name, "-q", "--threads", "1"], rest].concat());
+    let start = Instant::now();
+    let output = Command::new("sh")
+        .args(["-c", &limits, "sh"])
+        .arg(trullo.get_program())
+        .args(trullo.get_args())
+        .current_dir(trullo.get_current_dir().expect("it runs in the folder"))
+        .output()
+        .expect("there is a shell");
+    let took = start.elapsed();
+
+    let said = text_of(&output.stderr);
+    let what =
+        format!("trullo {verb} {name}: {:?}, {}", output.status, said.chars().take(2000).collect::<String>());
+    assert!(!said.contains("panicked"), "{what}");
+    assert!(took < PATIENCE, "{took:?}: {what}");
+    match output.status.code() {
+        Some(2) => {
+            assert!(said.starts_with(&format!("error: {name}: ")), "{what}");
+            assert!(said.ends_with('\n') && said.lines().count() == 1 && said.len() < 1000, "{what}");
+            assert!(!folder.has(&out), "{what}");
+        }
+        Some(0 | 1) => {
+            assert!(file.may_be_legal, "{what}");
+            // Some verbs write nothing.
+            let _ = std::fs::remove_file(folder.path(&out));
+        }
+        _ => panic!("{what}"),
+    }
+    took
+}
