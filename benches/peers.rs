@@ -89,10 +89,8 @@ fn fill_blocks(tree: &Tree, n: usize, bricks: &mut [[f32; BRICK_SAMPLES]]) {
         |sampler, (block, bricks)| {
             let corner = block_corner(block, n);
             let end = corner.map(|c| c + 63);
-            let region = Aabb {
-                min: Brick::lattice_point(corner, spacing),
-                max: Brick::lattice_point(end, spacing),
-            };
+            let region =
+                Aabb { min: Brick::lattice_point(corner, spacing), max: Brick::lattice_point(end, spacing) };
             sampler.enter(region);
             for (at, values) in bricks.iter_mut().enumerate() {
                 let brick = Brick { origin: brick_corner(corner, at), spacing };
@@ -153,7 +151,8 @@ fn edit(name: &str, n: u16) {
     let after = with_first_primitive_moved(&before, Vec3::new(0.02, 0.01, 0.015));
     let cell = CellSize::from_mm(2.0 / f32::from(n)).expect("a legal cell");
     let options = Options::default();
-    let build = |root: &NodeRef| Surface::build(&Tree::new(root), cell, &options).expect("the scene is meshed");
+    let build =
+        |root: &NodeRef| Surface::build(&Tree::new(root), cell, &options).expect("the scene is meshed");
     for threads in [1, 2] {
         pool(threads).install(|| {
             let whole = report("edit", &format!("{name}/{n}/whole"), threads, &Value::Null, || {

@@ -61,7 +61,10 @@ fn the_brackets_edges_stand_where_they_stood_through_caches() {
         };
         let there = a.iter().map(|p| nearest(p, &b)).fold(0.0, f32::max);
         let back = b.iter().map(|p| nearest(p, &a)).fold(0.0, f32::max);
-        println!("bracket at {cells} cells: {} sharp vertices, {there:.5} and {back:.5} cells apart", a.len());
+        println!(
+            "bracket at {cells} cells: {} sharp vertices, {there:.5} and {back:.5} cells apart",
+            a.len()
+        );
         assert!(there < 0.1 && back < 0.1, "{cells} cells: {there} and {back} cells apart");
     }
 }
@@ -124,7 +127,8 @@ fn every_example_stands_on_the_bed_and_is_a_printable_solid() {
         let mesh = surface(&tree, mm).mesh();
         let lowest = mesh.bounds().min.z;
         assert!(lowest.abs() < 0.05, "{name}: the lowest point is at {lowest} mm");
-        let flat = mesh.triangles.iter().filter(|t| t.iter().all(|&i| mesh.positions[i as usize].z < 0.1)).count();
+        let flat =
+            mesh.triangles.iter().filter(|t| t.iter().all(|&i| mesh.positions[i as usize].z < 0.1)).count();
         assert!(flat > 8, "{name}: only {flat} triangles lie on the bed");
         let report = mesh.validity(SelfIntersections::Search);
         println!(

@@ -132,10 +132,7 @@ fn nothing_appears_in_a_gap_that_the_usual_blends_bridge() {
             assert!(across > 0.5, "gap of {share} radii: the usual blend has only {across} in its middle");
         }
     }
-    let mesh = meshed(
-        &gradient_blend([point([-8.2, 0.0, 0.0], 8.0), point([8.2, 0.0, 0.0], 8.0)]),
-        0.25,
-    );
+    let mesh = meshed(&gradient_blend([point([-8.2, 0.0, 0.0], 8.0), point([8.2, 0.0, 0.0], 8.0)]), 0.25);
     assert_eq!(assert_sound(&mesh, 0.25, "two balls with a gap").bodies, 2);
 }
 
@@ -171,7 +168,8 @@ fn a_crease_at_a_right_angle_is_filled() {
 fn the_order_of_two_operands_changes_nothing() {
     let (a, b): (NodeRef, NodeRef) =
         (point([0.0; 3], 8.0).into(), segment([9.0, 0.0, 0.0], [20.0, 4.0, 3.0], 5.0).into());
-    let (one, other) = (Tree::new(&gradient_blend([a.clone(), b.clone()])), Tree::new(&gradient_blend([b, a])));
+    let (one, other) =
+        (Tree::new(&gradient_blend([a.clone(), b.clone()])), Tree::new(&gradient_blend([b, a])));
     let mut rng = Rng::with_seed(5);
     for _ in 0..3000 {
         let p = point_in(&mut rng, &one.support());

@@ -179,12 +179,15 @@ fn a_drag_of_many_small_steps_equals_a_fresh_surface_at_its_end() {
             .collect();
         let path = leaves[leaves.len() / 2].clone();
         for step in 0..10 {
-            let Shape::Primitive(primitive) = &path.find(&document.scene().root).expect("it stays").shape else {
+            let Shape::Primitive(primitive) = &path.find(&document.scene().root).expect("it stays").shape
+            else {
                 unreachable!("leaves are primitives")
             };
             let mut rng = Rng::with_seed(step);
             let shape = NewShape::Primitive(dragged(primitive, &mut rng));
-            let Ok(change) = document.apply(Command::SetShape { path: path.clone(), shape }) else { continue };
+            let Ok(change) = document.apply(Command::SetShape { path: path.clone(), shape }) else {
+                continue;
+            };
             let dirty = changed_region(&change.before, &change.after);
             followed
                 .update(&Tree::new(&change.after), dirty, &Options::default())
@@ -249,6 +252,7 @@ fn an_edit_far_away_leaves_every_brick_alone() {
     assert!(!dirty.contains(Vec3::ZERO) && dirty.contains(Vec3::new(200.0, 0.0, 0.0)));
     let mut followed: Surface = surface(&Tree::new(&before), 0.5);
     let far: Vec<_> = followed.bricks().filter(|key| key[0] > 10).collect();
-    let changes = followed.update(&Tree::new(&after), dirty, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+    let changes =
+        followed.update(&Tree::new(&after), dirty, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
     assert!(!far.is_empty() && changes.changed.iter().chain(&changes.removed).all(|key| key[0] > 10));
 }

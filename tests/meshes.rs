@@ -59,7 +59,12 @@ fn random_tree(seed: u64, imported: &ImportedMesh) -> NodeRef {
 fn imported() -> ImportedMesh {
     let ring = shapes::torus(Vec3::new(5.0, -3.0, 8.0), 20.0, 7.0, 48, 24);
     let distance = MeshDistance::new(&ring).unwrap_or_else(|e| panic!("{e}"));
-    ImportedMesh { file: "ring.stl".into(), sha256: "0".repeat(64), falloff: 6.0, distance: Arc::new(distance) }
+    ImportedMesh {
+        file: "ring.stl".into(),
+        sha256: "0".repeat(64),
+        falloff: 6.0,
+        distance: Arc::new(distance),
+    }
 }
 
 /// A cell that shows the solid: a 40th of its box, or half of volume over area where it is thin. A sheet is

@@ -12,7 +12,8 @@ use mesh::Mesh;
 /// Where the corners of a box end up; bit 0, 1, 2 of the number is the side in x, y, z.
 fn corners(half: Vec3, transform: &Transform) -> [Vec3; 8] {
     let [x, y, z] = transform.rotate_degrees.to_array().map(|d| f64::from(d).to_radians());
-    let turn = glam::DQuat::from_rotation_z(z) * glam::DQuat::from_rotation_y(y) * glam::DQuat::from_rotation_x(x);
+    let turn =
+        glam::DQuat::from_rotation_z(z) * glam::DQuat::from_rotation_y(y) * glam::DQuat::from_rotation_x(x);
     std::array::from_fn(|i| {
         let side = |axis: usize| if i >> axis & 1 == 1 { half[axis] } else { -half[axis] };
         let corner = Vec3::new(side(0), side(1), side(2)).as_dvec3();
@@ -34,7 +35,8 @@ fn distance_to(mesh: &Mesh, near: &[[u32; 3]], p: Vec3) -> f32 {
 
 /// The farthest that a corner is from all vertices, and a point of an edge from the mesh, mm.
 fn farthest(mesh: &Mesh, corners: &[Vec3; 8], mm: f32) -> (f32, f32) {
-    let to_vertex = |corner: &Vec3| mesh.positions.iter().map(|v| v.distance(*corner)).fold(f32::INFINITY, f32::min);
+    let to_vertex =
+        |corner: &Vec3| mesh.positions.iter().map(|v| v.distance(*corner)).fold(f32::INFINITY, f32::min);
     let corner = corners.iter().map(to_vertex).fold(0.0, f32::max);
     let mut edge = 0.0_f32;
     for [a, b] in edges() {
@@ -104,7 +106,8 @@ fn the_rim_of_a_turned_cylinder_and_the_tip_of_a_cone_are_kept() {
                 let around = Quat::from_axis_angle(axis, i as f32 / 48.0 * std::f32::consts::TAU);
                 let p = at + axis * end + around * side * 6.0;
                 let is_near = |i: &u32| mesh.positions[*i as usize].distance(p) < 2.0 * mm;
-                let near: Vec<[u32; 3]> = mesh.triangles.iter().filter(|t| t.iter().any(is_near)).copied().collect();
+                let near: Vec<[u32; 3]> =
+                    mesh.triangles.iter().filter(|t| t.iter().any(is_near)).copied().collect();
                 let off = distance_to(&mesh, &near, p) / mm;
                 assert!(off < 0.05, "seed {seed}: the rim is {off} cells off at {p}");
             }

@@ -130,7 +130,11 @@ fn soap() -> Known {
         on_surface: |[u, v, w]| {
             let corner = Vec3::new(7.0, 4.0, 2.0);
             let out = on_sphere(u, v);
-            if w < 0.5 { out.signum() * corner + 3.0 * out } else { Vec3::new(14.0 * u - 7.0, 8.0 * v - 4.0, 5.0) }
+            if w < 0.5 {
+                out.signum() * corner + 3.0 * out
+            } else {
+                Vec3::new(14.0 * u - 7.0, 8.0 * v - 4.0, 5.0)
+            }
         },
     }
 }
@@ -144,7 +148,11 @@ fn capsule() -> Known {
         area: Some(2.0 * PI * 5.0 * 16.0 + 4.0 * PI * 25.0),
         on_surface: |[u, v, w]| {
             let out = on_sphere(u, v);
-            if w < 0.5 { out * 5.0 + Vec3::Z * 8.0 * out.z.signum() } else { on_circle(u) * 5.0 + Vec3::Z * (16.0 * v - 8.0) }
+            if w < 0.5 {
+                out * 5.0 + Vec3::Z * 8.0 * out.z.signum()
+            } else {
+                on_circle(u) * 5.0 + Vec3::Z * (16.0 * v - 8.0)
+            }
         },
     }
 }
@@ -272,7 +280,10 @@ fn scaled_and_sheared_solids_have_their_volume_times_the_determinant() {
         for (name, linear) in [
             ("three scales", Mat3::from_diagonal(Vec3::new(1.5, 0.7, 1.1))),
             ("mirrored", Mat3::from_diagonal(Vec3::new(-1.0, 1.3, 0.8))),
-            ("sheared", Mat3::from_cols(Vec3::new(1.0, 0.2, 0.0), Vec3::new(0.4, 1.0, 0.1), Vec3::new(0.0, 0.3, 0.9))),
+            (
+                "sheared",
+                Mat3::from_cols(Vec3::new(1.0, 0.2, 0.0), Vec3::new(0.4, 1.0, 0.1), Vec3::new(0.0, 0.3, 0.9)),
+            ),
         ] {
             let rows = linear.transpose().to_cols_array_2d();
             let affine = AffineMap { rows: rows.map(|[x, y, z]| [x, y, z, 1.7]) };
@@ -312,7 +323,11 @@ fn every_solid_is_one_half_on_its_surface() {
             tree.sampler().values(&points, &mut values);
             for (p, value) in points.iter().zip(values) {
                 worst = worst.max((value - 0.5).abs());
-                assert!((value - 0.5).abs() < 1e-5, "{} with falloff {falloff:?}: {value} at {p}", solid.name);
+                assert!(
+                    (value - 0.5).abs() < 1e-5,
+                    "{} with falloff {falloff:?}: {value} at {p}",
+                    solid.name
+                );
             }
         }
         println!("{}: one half to {worst:.1e}", solid.name);

@@ -40,11 +40,7 @@ impl WarpMap {
     pub fn child_from_parent<S: Scalar>(&self, p: Triple<S>) -> Warped<S> {
         match self {
             Self::Affine(w) => {
-                Warped {
-                place: w.child_from_parent.apply(p),
-                rows: w.child_from_parent.rows(),
-                piece: 0,
-            }
+                Warped { place: w.child_from_parent.apply(p), rows: w.child_from_parent.rows(), piece: 0 }
             }
             Self::Taper(w) => w.child_from_parent(p),
             Self::Twist(w) => w.child_from_parent(p),
@@ -162,7 +158,13 @@ impl TaperMap {
             rows[a][w] = -(place[a] * slope * inverse);
         }
         let at = p[w].value();
-        let piece = if at <= self.start { 0 } else if at < self.end { 1 } else { 2 };
+        let piece = if at <= self.start {
+            0
+        } else if at < self.end {
+            1
+        } else {
+            2
+        };
         Warped { place, rows, piece }
     }
 

@@ -31,7 +31,9 @@ pub fn example(name: &str) -> Scene {
 /// The names of all example scenes, sorted.
 pub fn example_names() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-    let files = std::fs::read_dir(&folder).expect("the examples are there").map(|file| file.expect("readable").path());
+    let files = std::fs::read_dir(&folder)
+        .expect("the examples are there")
+        .map(|file| file.expect("readable").path());
     let scenes = files.filter(|path| path.extension().is_some_and(|e| e == "trullo"));
     let mut names: Vec<String> =
         scenes.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();
@@ -119,11 +121,15 @@ fn smallest_area(mesh: &Mesh) -> (f64, usize) {
 /// Distance from a point to a triangle, mm.
 pub fn distance_to_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f32 {
     let normal = (b - a).cross(c - a);
-    let inside = [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| (to - from).cross(p - from).dot(normal) >= 0.0);
+    let inside =
+        [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| (to - from).cross(p - from).dot(normal) >= 0.0);
     if inside && normal.length_squared() > 0.0 {
         return ((p - a).dot(normal) / normal.length()).abs();
     }
-    [(a, b), (b, c), (c, a)].map(|(from, to)| distance_to_segment(p, from, to)).into_iter().fold(f32::INFINITY, f32::min)
+    [(a, b), (b, c), (c, a)]
+        .map(|(from, to)| distance_to_segment(p, from, to))
+        .into_iter()
+        .fold(f32::INFINITY, f32::min)
 }
 
 /// Distance from a point to a line segment, mm.

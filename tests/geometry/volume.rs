@@ -87,7 +87,8 @@ impl Work<'_> {
         let width = self.leaf / STRATA as f32;
         let mut points = Vec::with_capacity(2 * STRATA.pow(3));
         for i in 0..STRATA.pow(3) {
-            let at = Vec3::new((i % STRATA) as f32, (i / STRATA % STRATA) as f32, (i / STRATA / STRATA) as f32);
+            let at =
+                Vec3::new((i % STRATA) as f32, (i / STRATA % STRATA) as f32, (i / STRATA / STRATA) as f32);
             let stratum = Aabb { min: region.min + at * width, max: region.min + (at + 1.0) * width };
             for _ in 0..2 {
                 points.push(super::point_in(&mut self.rng, &stratum).clamp(region.min, region.max));

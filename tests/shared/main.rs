@@ -12,7 +12,11 @@ use std::process::{Command, Output};
 /// A path below `../shared`, which must exist.
 fn shared(below: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared").join(below);
-    assert!(path.exists(), "{} is missing: these tests need the shared data beside the project", path.display());
+    assert!(
+        path.exists(),
+        "{} is missing: these tests need the shared data beside the project",
+        path.display()
+    );
     path
 }
 

@@ -28,7 +28,10 @@ fn every_model_is_a_sound_solid_of_the_volume_in_the_manifest() {
         let name = path.file_name().and_then(|name| name.to_str()).expect("a plain name");
         let expected = volume_in(&manifest, name);
         let measured = report["volume_mm3"].as_f64().expect("a volume") / 1000.0;
-        assert!((measured - expected).abs() < 0.002 * expected, "{name}: {measured} instead of {expected} cm³");
+        assert!(
+            (measured - expected).abs() < 0.002 * expected,
+            "{name}: {measured} instead of {expected} cm³"
+        );
     }
 }
 
@@ -36,7 +39,9 @@ fn every_model_is_a_sound_solid_of_the_volume_in_the_manifest() {
 fn volume_in(manifest: &Value, name: &str) -> f64 {
     let models = manifest["models"].as_array().expect("a list of models");
     let entry = models.iter().find(|entry| entry["file"] == name);
-    entry.and_then(|entry| entry["volume_cm3"].as_f64()).unwrap_or_else(|| panic!("{name} is not in the manifest"))
+    entry
+        .and_then(|entry| entry["volume_cm3"].as_f64())
+        .unwrap_or_else(|| panic!("{name} is not in the manifest"))
 }
 
 #[test]

@@ -64,7 +64,8 @@ fn reference(node: &Value, p: Vec3) -> f32 {
 #[test]
 fn the_benchmark_scenes_equal_the_peers_to_one_in_a_hundred_thousand() {
     for name in ["spheres30", "csg20", "character100", "points100"] {
-        let text = std::fs::read_to_string(shared(&format!("peerbench/scenes/{name}.json"))).expect("readable");
+        let text =
+            std::fs::read_to_string(shared(&format!("peerbench/scenes/{name}.json"))).expect("readable");
         let neutral: Value = serde_json::from_str(&text).expect("JSON");
         let path = format!("{}/benches/scenes/{name}.trullo", env!("CARGO_MANIFEST_DIR"));
         let bytes = std::fs::read(path).expect("in the repository");

@@ -27,7 +27,15 @@ fn exported_examples_open_in_a_slicer_without_repair() {
         assert!(made.status.success(), "{}: {}", scene.display(), String::from_utf8_lossy(&made.stderr));
         let info = slicer_info(&out);
         assert!(info.contains("manifold = yes"), "{}: {info}", scene.display());
-        let repair = ["repaired", "open_edges", "edges_fixed", "degenerate_facets", "facets_removed", "facets_reversed", "backwards_edges"];
+        let repair = [
+            "repaired",
+            "open_edges",
+            "edges_fixed",
+            "degenerate_facets",
+            "facets_removed",
+            "facets_reversed",
+            "backwards_edges",
+        ];
         for word in repair {
             let line = info.lines().find(|line| line.contains(word));
             assert!(line.is_none_or(|line| line.trim_end().ends_with("= 0")), "{}: {info}", scene.display());
