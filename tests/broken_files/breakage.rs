@@ -10,8 +10,6 @@ use std::io::Cursor;
 pub struct Broken {
     /// Its name.
     pub name: String,
-    /// What to try with it.
-    pub verbs: &'static [&'static str],
     /// Whether it may be a whole file all the same, such as half an OBJ file.
     pub may_be_legal: bool,
 }
@@ -24,9 +22,6 @@ const SCENE: &str = r##"{"format": "trullo", "version": 1, "title": "Two balls",
     {"type": "transform", "translate": [0, 0, 14], "scale": [0.5, 0.5, 0.5], "child": {"use": "ball"}},
     {"type": "box", "muted": false, "color": "#ff8000", "center": [9, 0, 4], "size": [6, 4, 8], "rounding": 1}
 ]}}"##;
-
-const ON_SCENES: [&[&str]; 5] = [&["eval"], &["mesh"], &["check"], &["render"], &["convert"]];
-const ON_MESHES: [&[&str]; 5] = [&["check"], &["convert"], &["render"], &["eval"], &["check", "mesh"]];
 
 struct Workshop<'a> {
     folder: &'a Folder,
@@ -66,9 +61,7 @@ impl Workshop<'_> {
     }
 
     fn register(&mut self, name: String, may_be_legal: bool) {
-        let verbs = if name.ends_with(".trullo") { ON_SCENES } else { ON_MESHES };
-        let verbs = verbs[self.files.len() % verbs.len()];
-        self.files.push(Broken { name, verbs, may_be_legal });
+        self.files.push(Broken { name, may_be_legal });
     }
 
     fn scene(&mut self, name: &str, text: &str) {

@@ -5,9 +5,10 @@
 //! the operations are the same, and none are fused.
 
 use super::places::{Places, ROW, Row};
-use super::scratch::Slopes;
+use super::scratch::{SlopeRow, Slopes};
+use crate::combine;
 use crate::falloff::{cube, larger};
-use crate::leaf::Kernel;
+use crate::leaf::{Kernel, PurePoint};
 use crate::scalar::{Slope, both_pieces};
 use pulp::NullaryFnOnce;
 
@@ -46,16 +47,38 @@ impl<K: Kernel, P: Places> NullaryFnOnce for KernelSlopes<'_, K, P> {
 
     #[inline(always)]
     fn call(self) {
-        let [gx, gy, gz] = &mut self.out.gradient;
-        let rows = self.out.value.iter_mut().zip(gx).zip(gy).zip(gz).zip(&mut self.out.piece);
-        for (r, ((((value, gx), gy), gz), piece)) in rows.enumerate() {
-            let row = self.places.row(r);
+        for r in 0..self.places.rows() {
+            let (row, mut out) = (self.places.row(r), SlopeRow::ZERO);
             for i in 0..ROW {
                 let slope = self.kernel.at(row.place(i));
-                value[i] = slope.value;
-                [gx[i], gy[i], gz[i]] = slope.gradient;
-                piece[i] = leaf_piece(self.number, slope.piece);
+                out.set(i, slope.on(leaf_piece(self.number, slope.piece)));
             }
+            self.out.set_row(r, &out);
+        }
+    }
+}
+
+/// Value and gradient of the sum of point primitives, each with its number among the tree's leaves.
+pub(super) struct SumPointSlopes<'a, P> {
+    pub points: &'a [(u32, PurePoint)],
+    pub places: &'a P,
+    pub out: &'a mut Slopes,
+}
+
+impl<P: Places> NullaryFnOnce for SumPointSlopes<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for r in 0..self.places.rows() {
+            let (row, mut out) = (self.places.row(r), SlopeRow::ZERO);
+            for (number, point) in self.points {
+                for i in 0..ROW {
+                    let slope = point.at(row.place(i)).on(leaf_piece(*number, 0));
+                    out.set(i, combine::add(out.get(i), slope));
+                }
+            }
+            self.out.set_row(r, &out);
         }
     }
 }
@@ -140,9 +163,11 @@ impl<F: Fn(Slope<f32>) -> Slope<f32>> NullaryFnOnce for EachSlope<'_, F> {
     #[inline(always)]
     fn call(self) {
         for r in 0..self.out.value.len() {
+            let mut row = self.out.row(r);
             for i in 0..ROW {
-                self.out.set(r, i, (self.f)(self.out.get(r, i)));
+                row.set(i, (self.f)(row.get(i)));
             }
+            self.out.set_row(r, &row);
         }
     }
 }
@@ -160,9 +185,11 @@ impl<F: Fn(Slope<f32>, Slope<f32>) -> Slope<f32>> NullaryFnOnce for ZipSlopes<'_
     #[inline(always)]
     fn call(self) {
         for r in 0..self.out.value.len() {
+            let (mut row, operand) = (self.out.row(r), self.operand.row(r));
             for i in 0..ROW {
-                self.out.set(r, i, (self.f)(self.out.get(r, i), self.operand.get(r, i)));
+                row.set(i, (self.f)(row.get(i), operand.get(i)));
             }
+            self.out.set_row(r, &row);
         }
     }
 }

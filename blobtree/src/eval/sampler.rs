@@ -7,6 +7,7 @@ use super::slopes::Want;
 use super::specialise::{Narrowed, Narrower};
 use crate::cache::CacheReader;
 use crate::field::{Aabb, BRICK_SAMPLES, Brick, Interval, Sample, Sampler};
+use crate::leaf::PurePoint;
 use glam::Vec3;
 use std::sync::atomic::Ordering;
 
@@ -24,6 +25,8 @@ pub(crate) struct TreeSampler<'a> {
     pub tables: Vec<[[f32; ROW]; 3]>,
     /// Those primitives.
     pub points: Vec<Instr>,
+    /// The same for sums with gradients.
+    pub numbered_points: Vec<(u32, PurePoint)>,
     /// A way into each of the tree's caches.
     pub readers: Vec<CacheReader>,
     pub arch: pulp::Arch,
@@ -48,6 +51,7 @@ impl<'a> TreeSampler<'a> {
             scratch: Scratch::default(),
             tables: Vec::new(),
             points: Vec::new(),
+            numbered_points: Vec::new(),
             readers: tree.caches.iter().map(|_| CacheReader::default()).collect(),
             arch: pulp::Arch::new(),
             evaluations: 0,

@@ -23,6 +23,22 @@ impl Slopes {
         self.piece.resize(rows, [0; ROW]);
     }
 
+    /// One row, by value: loops over rows in hand need not fear that buffers overlap.
+    #[inline(always)]
+    pub fn row(&self, r: usize) -> SlopeRow {
+        let [x, y, z] = &self.gradient;
+        SlopeRow { value: self.value[r], gradient: [x[r], y[r], z[r]], piece: self.piece[r] }
+    }
+
+    #[inline(always)]
+    pub fn set_row(&mut self, r: usize, row: &SlopeRow) {
+        self.value[r] = row.value;
+        for (along, x) in self.gradient.iter_mut().zip(row.gradient) {
+            along[r] = x;
+        }
+        self.piece[r] = row.piece;
+    }
+
     #[inline(always)]
     pub fn get(&self, r: usize, i: usize) -> Slope<f32> {
         let [x, y, z] = &self.gradient;
@@ -36,6 +52,33 @@ impl Slopes {
         for (along, x) in self.gradient.iter_mut().zip(slope.gradient) {
             along[r][i] = x;
         }
+    }
+}
+
+/// Values and gradients of one row.
+#[derive(Clone, Copy)]
+pub(crate) struct SlopeRow {
+    pub value: [f32; ROW],
+    pub gradient: [[f32; ROW]; 3],
+    pub piece: [u32; ROW],
+}
+
+impl SlopeRow {
+    pub const ZERO: Self = Self { value: [0.0; ROW], gradient: [[0.0; ROW]; 3], piece: [0; ROW] };
+
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Slope<f32> {
+        let [x, y, z] = &self.gradient;
+        Slope::new(self.value[i], [x[i], y[i], z[i]]).on(self.piece[i])
+    }
+
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, slope: Slope<f32>) {
+        self.value[i] = slope.value;
+        for (along, x) in self.gradient.iter_mut().zip(slope.gradient) {
+            along[i] = x;
+        }
+        self.piece[i] = slope.piece;
     }
 }
 

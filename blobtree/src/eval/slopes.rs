@@ -1,12 +1,12 @@
 //! Programs run for values with gradients, over clouds or bricks.
 
-use super::loops::{EachSlope, KernelSlopes, ZipSlopes};
+use super::loops::{EachSlope, KernelSlopes, SumPointSlopes, ZipSlopes};
 use super::places::{Places, ROW, Row};
 use super::program::{Instr, Op};
 use super::sampler::TreeSampler;
 use super::scratch::Slopes;
 use crate::combine::{self, Ricci};
-use crate::leaf::with_kernel;
+use crate::leaf::{Leaf, with_kernel};
 use crate::scalar::{Jet, Slope, both_pieces};
 
 /// What goes with the value.
@@ -39,7 +39,7 @@ impl TreeSampler<'_> {
             }
             Op::Warp(i) => self.warped_slopes(i, first, places, out, want),
             Op::Cache(i) => self.cached_slopes(i, first, places, out, want),
-            Op::Sum => self.fold_slopes(instr, places, out, want, combine::add),
+            Op::Sum => self.sum_slopes(instr, places, out, want),
             Op::Union => self.fold_slopes(instr, places, out, want, combine::union),
             Op::Intersection => self.fold_slopes(instr, places, out, want, combine::intersection),
             Op::Difference => self.fold_slopes(instr, places, out, want, combine::cut),
@@ -100,6 +100,29 @@ impl TreeSampler<'_> {
             }
         }
         self.scratch.give_cloud(cloud);
+    }
+
+    fn sum_slopes<P: Places + Sync>(&mut self, instr: Instr, places: &P, out: &mut Slopes, want: Want) {
+        let tree = self.tree;
+        let operands = instr.operands();
+        let arena = &self.narrower.arena;
+        self.numbered_points.clear();
+        self.numbered_points.extend(operands.clone().map_while(|at| match arena[at].op {
+            Op::Leaf(i) => match &tree.leaves[i as usize] {
+                Leaf::PurePoint(point) => Some((i, *point)),
+                _ => None,
+            },
+            _ => None,
+        }));
+        let points = self.numbered_points.len();
+        if points < 2 {
+            return self.fold_slopes(instr, places, out, want, combine::add);
+        }
+        self.evaluations += (points * places.rows() * ROW) as u64;
+        self.arch.dispatch(SumPointSlopes { points: &self.numbered_points, places, out: &mut *out });
+        for at in operands.skip(points) {
+            self.joined_slopes(at, places, out, want, combine::add);
+        }
     }
 
     /// Interpolates where the cache is accurate, and evaluates the exact operand at all other places.
