@@ -25,7 +25,7 @@ fn scenes() -> Vec<(String, Scene, f32)> {
         let mut random = RandomTree::new(seed);
         random.depth = 5;
         let tree = random.tree();
-        if size_of(&tree) >= 4 {
+        if size_of(&tree) >= 6 && !solid_box(&Tree::new(&tree)).is_empty() {
             scenes.push((format!("random tree {seed}"), Scene::new(tree)));
         }
         seed += 1;

@@ -46,7 +46,8 @@ pub fn read_mesh(data: &[u8], named: Format) {
 fn assert_comes_back(mesh: &Mesh) {
     let mut file = Cursor::new(Vec::new());
     write(&mut file, mesh, Format::Ply, &Attachments::default()).expect("what was read is writable");
-    let back = read_as_written(&mut file, Format::Ply, &ReadLimits::default()).expect("what was written is readable");
+    let back = read_as_written(&mut file, Format::Ply, &ReadLimits::default())
+        .expect("what was written is readable");
     assert!(back.mesh == *mesh, "the mesh changed");
 }
 

@@ -76,6 +76,10 @@ pub(crate) fn ring_around(
 /// four are in their quadrants with a margin of a 256th of a cell, the better one always leaves more.
 const LEAST_AREA: f32 = 1e-6;
 
+/// Diagonals that leave both triangles more than this area beyond the least, in squared cells, are chosen by
+/// what they join; else by area. Vertices along one sharp edge would make triangles of rounding errors.
+const COMFORTABLE_AREA: f32 = 1e-4;
+
 /// How close to the outward normals at its corners a triangle's normal must be (as a dot product) to be
 /// known as not turned over whatever it looks like along the edge. At a right-angled sharp edge, where normals
 /// are means, a right triangle has 0.7; at a corner of three right angles 0.58.
@@ -111,10 +115,11 @@ pub(crate) fn spare_areas(vertices: [&Vertex; 4], axis: usize, start_inside: boo
 
 /// Whether the diagonal from 1 to 3 is better than that from 0 to 2.
 ///
-/// First, no triangle may be turned over or flat; then sharp edges are joined, from corner to corner if
-/// possible; then the shorter diagonal is taken.
-pub(crate) fn prefers_second(vertices: [&Vertex; 4], spare: [f32; 2]) -> bool {
-    if spare[0] <= 0.0 || spare[1] <= 0.0 {
+/// First, no triangle may be turned over, flat or nearly so; then sharp edges are joined, from corner to
+/// corner if possible; then the shorter diagonal is taken.
+pub(crate) fn prefers_second(vertices: [&Vertex; 4], spare: [f32; 2], spacing: f32) -> bool {
+    let comfortable = COMFORTABLE_AREA * spacing * spacing;
+    if spare[0] <= comfortable || spare[1] <= comfortable {
         return spare[1] > spare[0];
     }
     let sharpness = |a: usize, b: usize| {

@@ -250,7 +250,7 @@ fn no_files(shop: &mut Workshop) {
         let name = format!("locked.{extension}");
         shop.add(name.clone(), SCENE, false);
         let path = shop.folder.path(&name);
-        std::fs::set_permissions(&path, PermissionsExt::from_mode(0)).expect(made);
+        std::fs::set_permissions(&path, PermissionsExt::from_mode(0o000)).expect(made);
         // Root may read everything.
         shop.files.last_mut().expect("it was just added").may_be_legal = std::fs::read(&path).is_ok();
     }
