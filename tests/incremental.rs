@@ -158,7 +158,7 @@ fn after_random_edits_the_updated_surface_equals_a_fresh_one() {
             on_threads(2, || followed.update(&tree, dirty, &Options::default()))
                 .unwrap_or_else(|e| panic!("{name}: {e}"));
             assert_same(&followed.mesh(), &fresh.mesh(), &name);
-            assert!(followed == fresh, "{name}: equal meshes, other surfaces");
+            assert!(followed == fresh, "{name}: equal meshes, other normals or kinds of vertices");
             counts[0] += 1;
             counts[1] += usize::from(fresh.triangle_count() > 0);
         }

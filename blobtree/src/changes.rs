@@ -26,7 +26,8 @@ pub fn changed_region(old: &NodeRef, new: &NodeRef) -> Aabb {
         (Shape::Primitive(a), Shape::Primitive(b)) if a == b => Aabb::EMPTY,
         _ => either,
     };
-    changed.intersection(&either)
+    let felt = changed.intersection(&either);
+    felt.grown(1e-5 * felt.min.abs().max(felt.max.abs()).max_element())
 }
 
 /// The same for an operator's children; `None` if all that it makes may have changed.

@@ -43,7 +43,7 @@ pub(crate) fn solid_part<S: Scalar>(f: Slope<S>) -> Slope<S> {
 
 /// Ricci's blend `(Σ fˢ)^(1/s)` of values of at least 0, as a fold: terms are joined, the join has a root.
 ///
-/// For s = 2 terms are squares, and one root is taken at the end. For other s joins are norms of pairs, which
+/// For s = 2 terms are squares with the gradients of their roots, and one root is taken at the end. For other s joins are norms of pairs, which
 /// leave a value exactly as it is beside a 0, and in which no power underflows.
 ///
 /// **Source:** Schmidt & Wyvill 2011, eq. 6.
@@ -53,13 +53,13 @@ pub(crate) struct Ricci(pub f32);
 impl Ricci {
     #[inline(always)]
     pub fn term<S: Scalar>(self, f: Slope<S>) -> Slope<S> {
-        if self.0 == 2.0 { Slope::new(f.value * f.value, scaled(f.gradient, f.value)).on(f.piece) } else { f }
+        if self.0 == 2.0 { Slope::new(f.value * f.value, f.gradient).on(f.piece) } else { f }
     }
 
     #[inline(always)]
     pub fn join<S: Scalar>(self, a: Slope<S>, b: Slope<S>) -> Slope<S> {
         if self.0 == 2.0 {
-            return add(a, b);
+            return add_squares(a, b);
         }
         let (value, by_a, by_b) = norm(a.value, b.value, self.0);
         let gradient = sum(scaled(a.gradient, by_a), scaled(b.gradient, by_b));
@@ -68,12 +68,7 @@ impl Ricci {
 
     #[inline(always)]
     pub fn root<S: Scalar>(self, join: Slope<S>) -> Slope<S> {
-        if self.0 != 2.0 {
-            return join;
-        }
-        let value = join.value.sqrt();
-        let gradient = scaled(join.gradient, S::of(1.0) / value.larger(S::of(1e-19)));
-        Slope::new(value, gradient).on(join.piece)
+        if self.0 != 2.0 { join } else { Slope::new(join.value.sqrt(), join.gradient).on(join.piece) }
     }
 
     /// The blend of two.
@@ -81,6 +76,22 @@ impl Ricci {
     pub fn both<S: Scalar>(self, f: Slope<S>, g: Slope<S>) -> Slope<S> {
         self.root(self.join(self.term(f), self.term(g)))
     }
+}
+
+/// The sum of two squares, each with the gradient of its root. Beside a 0 nothing changes, to the last bit: whether
+/// a program still holds an operand that is 0 in its region must not show.
+#[inline(always)]
+fn add_squares<S: Scalar>(a: Slope<S>, b: Slope<S>) -> Slope<S> {
+    let value = a.value + b.value;
+    let gradient = if b.value.value() <= 0.0 {
+        a.gradient
+    } else if a.value.value() <= 0.0 {
+        b.gradient
+    } else {
+        let inverse = S::of(1.0) / value.sqrt();
+        sum(scaled(a.gradient, a.value.sqrt() * inverse), scaled(b.gradient, b.value.sqrt() * inverse))
+    };
+    Slope::new(value, gradient).on(both_pieces(a.piece, b.piece))
 }
 
 /// `(uˢ + vˢ)^(1/s)` of two numbers of at least 0, and its derivatives by both.

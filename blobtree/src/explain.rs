@@ -114,7 +114,7 @@ fn shares(operator: Operator, samples: &[Sample], heard: &[bool]) -> Vec<f32> {
             decided_by(cut.or((!values.is_empty()).then_some(0)), values.len())
         }
         Operator::Blend(s) => values.iter().map(|f| power(*f, s.get())).collect(),
-        Operator::Sum => values.clone(),
+        Operator::Sum => values,
         Operator::BlendIntersection(s) => {
             let outside: Vec<f32> = values.iter().map(|f| 1.0 - f).collect();
             let all_inside = outside.iter().zip(heard).all(|(u, heard)| *u <= 0.0 || !heard);

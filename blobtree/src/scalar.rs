@@ -102,6 +102,7 @@ impl Neg for Jet {
     }
 }
 
+#[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule adds")]
 impl Mul for Jet {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
@@ -110,6 +111,7 @@ impl Mul for Jet {
     }
 }
 
+#[expect(clippy::suspicious_arithmetic_impl, reason = "the quotient rule subtracts and multiplies")]
 impl Div for Jet {
     type Output = Self;
     fn div(self, b: Self) -> Self {

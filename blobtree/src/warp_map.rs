@@ -2,7 +2,7 @@
 
 use crate::field::Aabb;
 use crate::leaf::Frame;
-use crate::scalar::{Scalar, Triple};
+use crate::scalar::{Scalar, Slope, Triple, both_pieces};
 use crate::warp::{Axis, Bend, Taper, Twist};
 use glam::{DAffine3, Vec3};
 
@@ -27,6 +27,11 @@ pub(crate) struct Warped<S> {
 }
 
 impl<S: Scalar> Warped<S> {
+    /// The piece of a field above the warp; where the field is 0, the warp's jumps are not felt.
+    pub fn piece_of(&self, inner: &Slope<S>) -> u32 {
+        if inner.value.value() > 0.0 { both_pieces(inner.piece, self.piece) } else { inner.piece }
+    }
+
     /// A gradient in the child's space, as one in the parent's.
     #[inline(always)]
     pub fn pull_back(&self, g: Triple<S>) -> Triple<S> {

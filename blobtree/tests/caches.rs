@@ -103,7 +103,7 @@ fn after_moving_one_of_a_thousand_blobs_caches_save_nine_tenths_of_the_work() {
 
     let mut balls: Vec<NodeRef> = trees[17].children().to_vec();
     balls[3] = NodeRef::from(Node::clone(&balls[3]).translate([1.0, 0.5, 0.0]));
-    let mut moved = trees.clone();
+    let mut moved = trees;
     moved[17] = sum(balls).named("tree 17").into();
     let after: NodeRef = union(moved).into();
 

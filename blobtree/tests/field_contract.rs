@@ -1,7 +1,7 @@
 //! What [`blobtree::Field`] promises, held against random trees and every type of node.
 
 use blobtree::random::RandomTree;
-use blobtree::{Aabb, BRICK, BRICK_SAMPLES, Brick, Field, NodeRef, Sample, Tree};
+use blobtree::{Aabb, BRICK, BRICK_SAMPLES, Brick, Field, NodeRef, Primitive, Sample, Shape, Tree};
 use fastrand::Rng;
 use glam::Vec3;
 
@@ -89,7 +89,7 @@ fn bounds_hold_at_a_million_random_places() {
 
 #[test]
 fn fields_are_zero_outside_their_support() {
-    for (seed, root) in random_trees(2000..2300, 5) {
+    for (seed, root) in random_trees(2000..2300, 5).chain(random_trees(7000..9000, 1)) {
         let tree = Tree::new(&root);
         let support = tree.support();
         let mut rng = Rng::with_seed(seed);
@@ -123,7 +123,7 @@ fn central_difference(tree: &Tree, p: Vec3, scale: f32) -> Option<Vec3> {
 fn gradients_are_exact_for_every_type_of_node() {
     let mut tried = std::collections::BTreeMap::<&str, usize>::new();
     for (seed, root) in
-        random_trees(2500..3000, 1).chain(random_trees(3000..5400, 2)).chain(random_trees(6000..6300, 4))
+        random_trees(10_000..11_500, 1).chain(random_trees(3000..5400, 2)).chain(random_trees(6000..6300, 4))
     {
         let tree = Tree::new(&root);
         let arena = arena(&tree);
@@ -156,4 +156,24 @@ fn gradients_are_exact_for_every_type_of_node() {
     for name in blobtree::TYPE_NAMES {
         assert!(tried.get(name).copied().unwrap_or(0) > 50 || name == "mesh", "{name}: {tried:?}");
     }
+}
+
+#[test]
+fn a_torus_has_its_hole_on_the_axis_too() {
+    for falloff in [None, Some(2.0)] {
+        let mut ring = blobtree::build::torus([1.0, 2.0, 3.0], [0.0, 0.0, 1.0], 9.0, 3.0);
+        if let Shape::Primitive(Primitive::Torus(torus)) = &mut ring.shape {
+            torus.falloff = falloff;
+        }
+        let tree = Tree::new(&ring);
+        for z in [-50.0, 0.0, 3.0, 4.0] {
+            let (on, beside) = (Vec3::new(1.0, 2.0, z), Vec3::new(1.001, 2.0, z));
+            assert_eq!((tree.value(on), tree.value(beside)), (0.0, 0.0), "falloff {falloff:?}, z = {z}");
+        }
+    }
+    // Where the tube reaches the axis, the axis is as deep as what is around it.
+    let tree = Tree::new(&blobtree::build::torus([0.0; 3], [0.0, 0.0, 1.0], 2.0, 3.0));
+    let (on, beside) = (tree.sample(Vec3::ZERO), tree.sample(Vec3::new(1e-4, 0.0, 0.0)));
+    assert!((on.value - beside.value).abs() < 1e-3, "{on:?}, {beside:?}");
+    assert!((on.gradient.length() - beside.gradient.length()).abs() < 1e-3, "{on:?}, {beside:?}");
 }

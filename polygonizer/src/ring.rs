@@ -1,6 +1,6 @@
 //! The four vertices around a crossed lattice edge, and how to cut their quadrilateral.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use crate::brick_surface::MixedCell;
 use crate::lattice::CELLS;
@@ -76,9 +76,13 @@ pub(crate) fn ring_around(
 /// four are in their quadrants with a margin of a 256th of a cell, the better one always leaves more.
 const LEAST_AREA: f32 = 1e-6;
 
-/// Diagonals that leave both triangles more than this area beyond the least, in squared cells, are chosen by
-/// what they join; else by area. Vertices along one sharp edge would make triangles of rounding errors.
-const COMFORTABLE_AREA: f32 = 1e-4;
+/// What vertices that leave their cells must leave as spare area, in squared cells: two at nearly the same
+/// place would make triangles of rounding errors.
+pub(crate) const ROOM: f32 = 3e-4;
+
+/// A triangle whose height is a smaller share of its longest side is nearly flat: three vertices along one
+/// sharp edge make triangles of rounding errors.
+const FLAT: f32 = 1e-3;
 
 /// How close to the outward normals at its corners a triangle's normal must be (as a dot product) to be
 /// known as not turned over whatever it looks like along the edge. At a right-angled sharp edge, where normals
@@ -100,7 +104,7 @@ pub(crate) fn spare_areas(vertices: [&Vertex; 4], axis: usize, start_inside: boo
     let least = LEAST_AREA * spacing * spacing;
     [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]].map(|[first, second]| {
         let spare = area(first).min(area(second)) - least;
-        if spare > 0.0 {
+        if spare > ROOM * spacing * spacing {
             return spare;
         }
         let true_area = |[a, b, c]: [usize; 3]| {
@@ -117,10 +121,16 @@ pub(crate) fn spare_areas(vertices: [&Vertex; 4], axis: usize, start_inside: boo
 ///
 /// First, no triangle may be turned over, flat or nearly so; then sharp edges are joined, from corner to
 /// corner if possible; then the shorter diagonal is taken.
-pub(crate) fn prefers_second(vertices: [&Vertex; 4], spare: [f32; 2], spacing: f32) -> bool {
-    let comfortable = COMFORTABLE_AREA * spacing * spacing;
-    if spare[0] <= comfortable || spare[1] <= comfortable {
+pub(crate) fn prefers_second(vertices: [&Vertex; 4], spare: [f32; 2]) -> bool {
+    if spare[0] <= 0.0 || spare[1] <= 0.0 {
         return spare[1] > spare[0];
+    }
+    let slimness = [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]].map(|[first, second]| {
+        let of = |corners: [usize; 3]| slimness(corners.map(|i| vertices[i].position));
+        of(first).min(of(second))
+    });
+    if slimness[0].min(slimness[1]) < FLAT {
+        return slimness[1] > slimness[0];
     }
     let sharpness = |a: usize, b: usize| {
         let (a, b) = (vertices[a].kind, vertices[b].kind);
@@ -133,4 +143,10 @@ pub(crate) fn prefers_second(vertices: [&Vertex; 4], spare: [f32; 2], spacing: f
         }
         order => order.is_gt(),
     }
+}
+
+/// Height over longest side, about.
+fn slimness([a, b, c]: [Vec3; 3]) -> f32 {
+    let longest2 = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    (b - a).cross(c - a).length() / longest2
 }

@@ -32,7 +32,7 @@ pub(crate) fn stitch(
             let Some((ring, corners)) = found else { continue };
             let spare = spare_areas(corners, axis, config & 1 == 1, spacing);
             let [a, b, c, d] = ring;
-            if prefers_second(corners, spare, spacing) {
+            if prefers_second(corners, spare) {
                 triangles.extend([[b, c, d], [b, d, a]]);
             } else {
                 triangles.extend([[a, b, c], [a, c, d]]);

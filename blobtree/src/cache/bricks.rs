@@ -35,7 +35,7 @@ pub(crate) struct NodeCache {
     /// Distance of neighbouring samples, mm. The lattice is anchored at the origin, not at the node's box, so
     /// that edits do not shift it.
     pub spacing: f32,
-    bricks: RwLock<HashMap<[i32; 3], Arc<OnceLock<CacheBrick>>>>,
+    bricks: RwLock<HashMap<[i32; 3], Slot>>,
 }
 
 /// What a cache knows of a brick.
@@ -48,6 +48,9 @@ pub(crate) enum CacheBrick {
     /// It is not.
     Exact,
 }
+
+/// A brick that is filled or will be.
+type Slot = Arc<OnceLock<CacheBrick>>;
 
 /// A cache at its place in a tree.
 #[derive(Debug)]
@@ -73,7 +76,7 @@ impl NodeCache {
     }
 
     /// The brick with this key, filled if it was not; `None` where the cache is full.
-    fn brick(&self, key: [i32; 3]) -> Option<Arc<OnceLock<CacheBrick>>> {
+    fn brick(&self, key: [i32; 3]) -> Option<Slot> {
         let known = self.bricks.read().unwrap_or_else(std::sync::PoisonError::into_inner).get(&key).cloned();
         let slot = match known {
             Some(slot) => slot,
@@ -132,7 +135,7 @@ fn interpolation_error(values: &Samples) -> f32 {
 /// One thread's way into a cache: remembers the brick it looked at last.
 #[derive(Debug, Default)]
 pub(crate) struct CacheReader {
-    last: Option<([i32; 3], Option<Arc<OnceLock<CacheBrick>>>)>,
+    last: Option<([i32; 3], Option<Slot>)>,
 }
 
 impl CacheReader {

@@ -4,7 +4,7 @@ use super::loops::leaf_piece;
 use super::program::{Instr, Op};
 use super::sampler::TreeSampler;
 use crate::combine::{self, Ricci};
-use crate::scalar::{Scalar, Slope, Triple, both_pieces};
+use crate::scalar::{Scalar, Slope, Triple};
 
 impl TreeSampler<'_> {
     /// The value of `instr` at `p` with its direction (see [`Want`](super::slopes::Want)). The same formulas
@@ -21,7 +21,7 @@ impl TreeSampler<'_> {
             Op::Warp(i) => {
                 let warped = self.tree.warps[i as usize].child_from_parent(p);
                 let inner = self.run_point(self.narrower.arena[first], warped.place);
-                let piece = both_pieces(inner.piece, warped.piece);
+                let piece = warped.piece_of(&inner);
                 Slope::new(inner.value, warped.pull_back(inner.gradient)).on(piece)
             }
             Op::Cache(i) => match self.readers[i as usize].read(&self.tree.caches[i as usize], p) {

@@ -65,7 +65,11 @@ impl Instr {
 #[derive(Debug)]
 pub struct Tree {
     pub(crate) leaves: Vec<Leaf>,
+    /// Boxes in the space where each is evaluated, outside which it is 0.
+    pub(crate) leaf_supports: Vec<Aabb>,
     pub(crate) warps: Vec<WarpMap>,
+    /// The same for what lies below each warp.
+    pub(crate) warp_supports: Vec<Aabb>,
     /// From gradients in the space of evaluation to those in a gradient blend's own; `None` if it is at most
     /// turned and scaled evenly, which angles do not notice.
     pub(crate) frames: Vec<Option<Mat3>>,
@@ -87,7 +91,9 @@ impl Tree {
     pub(crate) fn compiled(node: &Node, find: FindCache) -> Self {
         let mut tree = Self {
             leaves: Vec::new(),
+            leaf_supports: Vec::new(),
             warps: Vec::new(),
+            warp_supports: Vec::new(),
             frames: Vec::new(),
             caches: Vec::new(),
             arena: Vec::new(),
@@ -129,6 +135,7 @@ impl Tree {
         match &node.shape {
             Shape::Primitive(primitive) => {
                 self.leaves.push(Leaf::new(primitive, node_from_world));
+                self.leaf_supports.push(seen_from(node_from_world, &leaf::support(primitive)));
                 Instr { op: Op::Leaf(self.leaves.len() as u32 - 1), first: 0, count: 0 }
             }
             Shape::Warp(warp, child) => self.compile_warp(warp, child, node_from_world, find),
@@ -163,13 +170,16 @@ impl Tree {
         if inner.op == Op::Empty {
             return Instr::EMPTY;
         }
+        let support = map.parent_region(&support(child));
         let warped = self.push(Op::Warp(self.warps.len() as u32), [inner]);
         self.warps.push(map);
+        self.warp_supports.push(support);
         if !between {
             return warped;
         }
         let outer = self.push(Op::Warp(self.warps.len() as u32), [warped]);
         self.warps.push(WarpMap::Affine(AffineWarp::new(node_from_world)));
+        self.warp_supports.push(seen_from(node_from_world, &support));
         outer
     }
 
@@ -249,6 +259,18 @@ pub(crate) fn warp_map(warp: &Warp) -> WarpMap {
     }
 }
 
+/// The box around a node's `region` in the space from which `node_from_world` leads to the node's.
+fn seen_from(node_from_world: &DAffine3, region: &Aabb) -> Aabb {
+    let world_from_node = node_from_world.inverse();
+    let corners = region.corners().map(|p| world_from_node.transform_point3(p.as_dvec3()).as_vec3());
+    with_room(Aabb::of_points(corners), 1e-6)
+}
+
+/// Room for rounding errors of this share of the coordinates.
+fn with_room(region: Aabb, share: f32) -> Aabb {
+    region.grown(share * region.min.abs().max(region.max.abs()).max_element())
+}
+
 /// The box outside which the field of `node` is 0, in its parent's space; empty if the node is not heard.
 pub fn support(node: &Node) -> Aabb {
     if !node.is_heard() {
@@ -279,8 +301,7 @@ pub(crate) fn warped_region(warp: &Warp, region: &Aabb) -> Aabb {
         _ if region.is_empty() => Aabb::EMPTY,
         Some(map) => {
             let corners = region.corners().map(|p| map.transform_point3(p));
-            let image = Aabb::of_points(corners);
-            image.grown(2e-6 * image.min.abs().max(image.max.abs()).max_element())
+            with_room(Aabb::of_points(corners), 2e-6)
         }
         None => warp_map(warp).parent_region(region),
     }

@@ -7,7 +7,7 @@ use super::sampler::TreeSampler;
 use super::scratch::Slopes;
 use crate::combine::{self, Ricci};
 use crate::leaf::{Leaf, with_kernel};
-use crate::scalar::{Jet, Slope, both_pieces};
+use crate::scalar::{Jet, Slope};
 
 /// What goes with the value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl TreeSampler<'_> {
             for i in 0..ROW {
                 let slope = out.get(r, i);
                 let warped = warp.child_from_parent(row.place(i));
-                let piece = both_pieces(slope.piece, warped.piece);
+                let piece = warped.piece_of(&slope);
                 out.set(r, i, Slope::new(slope.value, warped.pull_back(slope.gradient)).on(piece));
             }
         }

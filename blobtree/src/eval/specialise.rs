@@ -39,10 +39,12 @@ impl Narrower {
 
     /// Narrows `instr`, whose operands stand in the arena, to `region`; new operands are added at the end.
     ///
-    /// Values never change by this, to the last bit: what goes is 0 or loses every comparison.
+    /// Values never change by this, to the last bit: what goes is 0 or loses every comparison. Nothing is left
+    /// of what lies outside its support, so that an edit there leaves the program the same.
     pub fn narrow(&mut self, tree: &Tree, instr: Instr, region: &Aabb) -> Narrowed {
         match instr.op {
             Op::Empty => Narrowed::EMPTY,
+            Op::Leaf(i) if !tree.leaf_supports[i as usize].overlaps(region) => Narrowed::EMPTY,
             Op::Leaf(i) => {
                 let leaf = &tree.leaves[i as usize];
                 let bound = leaf.bound(region);
@@ -51,6 +53,7 @@ impl Narrower {
                 }
                 Narrowed { instr, bound, creased: leaf.creased(region) }
             }
+            Op::Warp(i) if !tree.warp_supports[i as usize].overlaps(region) => Narrowed::EMPTY,
             Op::Warp(i) => {
                 let warp = &tree.warps[i as usize];
                 let inner = self.narrow(tree, self.arena[instr.first as usize], &warp.child_region(region));

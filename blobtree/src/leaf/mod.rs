@@ -9,7 +9,7 @@ mod solid;
 
 use crate::falloff::Falloff;
 use crate::field::{Aabb, Interval};
-use crate::primitive::{Cone, PolylinePoint, Primitive};
+use crate::primitive::{PolylinePoint, Primitive};
 use crate::scalar::{Scalar, Slope, Triple};
 use chain::Chain;
 pub(crate) use frame::Frame;
@@ -224,21 +224,21 @@ pub(crate) fn support(primitive: &Primitive) -> Aabb {
     let (surface, depth, width) = surface_box(primitive);
     let width = Falloff::new(width, depth).width();
     let reached = match primitive {
-        Primitive::Cone(cone) => widened_cone(cone, width),
+        Primitive::Cone(p) => widened(p.from, p.to, [p.radius_from, p.radius_to], width),
+        Primitive::Cylinder(p) => widened(p.from, p.to, [p.radius, p.radius], width),
         _ => surface.grown(width),
     };
     reached.grown(1e-5 * reached.size().max_element())
 }
 
-/// The box around a cone whose base, top and side have all moved out by `width`: its rims stay sharp, and so
-/// reach farther.
-fn widened_cone(cone: &Cone, width: f32) -> Aabb {
-    let length = cone.from.distance(cone.to);
-    let axis = (cone.to - cone.from) / length;
-    let growth = (cone.radius_to - cone.radius_from) / length;
+/// The box around a cone or cylinder whose base, top and side have all moved out by `width`: its rims stay
+/// sharp, and so reach farther.
+fn widened(from: Vec3, to: Vec3, [radius_from, radius_to]: [f32; 2], width: f32) -> Aabb {
+    let length = from.distance(to);
+    let (axis, growth) = ((to - from) / length, (radius_to - radius_from) / length);
     let out = width * (1.0 + growth * growth).sqrt();
-    let radius = |z: f32| (cone.radius_from + growth * z + out).max(0.0);
-    around_axis((cone.from - axis * width, radius(-width)), (cone.to + axis * width, radius(length + width)))
+    let radius = |z: f32| (radius_from + growth * z + out).max(0.0);
+    around_axis((from - axis * width, radius(-width)), (to + axis * width, radius(length + width)))
 }
 
 /// The box around two discs about the line through their centres, each given by centre and radius.
@@ -269,8 +269,10 @@ pub(crate) fn surface_box(primitive: &Primitive) -> (Aabb, f32, Option<f32>) {
             (around_disc(p.center, p.normal, p.radius - half).grown(half), half, p.falloff)
         }
         Primitive::Polygon(p) => {
+            let (normal, origin) = polygon::plane(&p.points).unwrap_or((Vec3::Z, p.points[0]));
+            let flattened = p.points.iter().map(|q| *q - normal * (*q - origin).dot(normal));
             let half = 0.5 * p.thickness;
-            (Aabb::of_points(p.points.iter().copied()).grown(half), half, p.falloff)
+            (Aabb::of_points(flattened).grown(half), half, p.falloff)
         }
         Primitive::Box(p) => (Aabb::around(p.center, 0.5 * p.size), 0.5 * p.size.min_element(), p.falloff),
         Primitive::Cylinder(p) => {

@@ -66,7 +66,8 @@ impl<T: Skeleton> Kernel for Skeletal<T> {
         let e = (d - S::of(self.full)).larger(S::of(0.0));
         let t = (S::of(1.0) - e * e * S::of(self.inv_reach2)).larger(S::of(0.0));
         let slope = S::of(-6.0 * self.inv_reach2) * t * t * e / d.larger(S::of(1e-12));
-        Slope::new(t * t * t, self.frame.pull_back(scaled(o, slope))).on(self.skeleton.piece(q))
+        let piece = if t.value() > 0.0 { self.skeleton.piece(q) } else { 0 };
+        Slope::new(t * t * t, self.frame.pull_back(scaled(o, slope))).on(piece)
     }
 
     fn bound(&self, region: &Aabb) -> Interval {
@@ -86,7 +87,8 @@ impl<T: Skeleton> Kernel for PureSkeletal<T> {
         let o = self.skeleton.offset(q);
         let t = (S::of(1.0) - dot(o, o) * S::of(self.inv_reach2)).larger(S::of(0.0));
         let slope = S::of(-6.0 * self.inv_reach2) * t * t;
-        Slope::new(t * t * t, self.frame.pull_back(scaled(o, slope))).on(self.skeleton.piece(q))
+        let piece = if t.value() > 0.0 { self.skeleton.piece(q) } else { 0 };
+        Slope::new(t * t * t, self.frame.pull_back(scaled(o, slope))).on(piece)
     }
 
     fn bound(&self, region: &Aabb) -> Interval {
@@ -221,7 +223,11 @@ impl Skeleton for Circle {
     fn offset<S: Scalar>(&self, q: Triple<S>) -> Triple<S> {
         let around = (q[0] * q[0] + q[1] * q[1]).sqrt().larger(S::of(1e-12));
         let beyond = S::of(1.0) - S::of(self.radius) / around;
-        [q[0] * beyond, q[1] * beyond, q[2]]
+        // On the axis every point of the circle is as near: the one on the x axis will do.
+        let is_apart = around.value() > 1e-12;
+        let x = if is_apart { q[0] * beyond } else { q[0] - S::of(self.radius) };
+        let y = if is_apart { q[1] * beyond } else { q[1] };
+        [x, y, q[2]]
     }
 
     fn distance_bound(&self, range: &Range) -> (f32, f32) {

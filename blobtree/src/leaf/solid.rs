@@ -43,7 +43,9 @@ impl<T: Solid> Kernel for Fallen<T> {
         let e = (d.value + S::of(self.core)).larger(S::of(0.0));
         let t = (S::of(1.0) - e * e * S::of(self.inv_reach2)).larger(S::of(0.0));
         let slope = S::of(-6.0 * self.inv_reach2) * t * t * e;
-        Slope::new(t * t * t, self.frame.pull_back(scaled(d.gradient, slope))).on(d.piece)
+        // Where the field is 0 it is smooth, whatever the distance does there.
+        let piece = if t.value() > 0.0 { d.piece } else { 0 };
+        Slope::new(t * t * t, self.frame.pull_back(scaled(d.gradient, slope))).on(piece)
     }
 
     fn bound(&self, region: &Aabb) -> Interval {
@@ -235,7 +237,9 @@ impl Solid for Frustum {
         let (growth, cosine) = self.growth();
         let radius = S::of(self.radius_from) + S::of(growth) * q[2];
         let side = tube(q, radius, [S::of(0.0), S::of(0.0), S::of(growth)]);
-        let side = Slope::new(side.value * S::of(cosine), scaled(side.gradient, S::of(cosine)));
+        // The side is smooth but at its tip, around which all its quarters meet.
+        let quarter = 3 + u32::from(q[0].value() < 0.0) + 2 * u32::from(q[1].value() < 0.0);
+        let side = Slope::new(side.value * S::of(cosine), scaled(side.gradient, S::of(cosine))).on(quarter);
         let half = S::of(0.5 * self.length);
         let caps = slab([q[0], q[1], q[2] - half], 2, 0.5 * self.length);
         farther(side, caps)

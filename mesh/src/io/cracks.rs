@@ -41,10 +41,13 @@ pub fn close_cracks(mesh: &mut Mesh) -> Option<Notice> {
         return None;
     }
     let seam = Seam::new(mesh);
+    let distances = distances(&seam, mesh);
+    // What the largest distance does not join, no other does.
+    join(&seam.vertices, &mesh.positions, *distances.last()?)?;
     let mut best = seam.before;
     let mut closing = None;
-    for within in distances(&seam, mesh) {
-        let joined = join(&seam.vertices, &mesh.positions, within);
+    for within in distances {
+        let Some(joined) = join(&seam.vertices, &mesh.positions, within) else { continue };
         let left = seam.after(&joined);
         if left.faults < best.faults && left.open < best.open {
             best = left;
@@ -195,8 +198,8 @@ fn distances(seam: &Seam, mesh: &Mesh) -> Vec<f64> {
     distances
 }
 
-/// For every vertex of the mesh the one it is joined to, itself if none.
-fn join(members: &[u32], positions: &[Vec3], within: f64) -> Vec<u32> {
+/// For every vertex of the mesh the one it is joined to, itself if none; nothing if no two are near enough.
+fn join(members: &[u32], positions: &[Vec3], within: f64) -> Option<Vec<u32>> {
     let mut joined: Vec<u32> = (0..).take(positions.len()).collect();
     if within == 0.0 {
         let mut welder = Welder::with_room(members.len() / 2);
@@ -214,7 +217,7 @@ fn join(members: &[u32], positions: &[Vec3], within: f64) -> Vec<u32> {
             joined[v as usize] = stays.nearest_or_add(v);
         }
     }
-    joined
+    members.iter().any(|&v| joined[v as usize] != v).then_some(joined)
 }
 
 /// The vertices that stay, by place. No two are within the distance, so that a cell holds few, whatever the mesh.
@@ -226,15 +229,15 @@ struct Grid<'a> {
     /// Vertices by the hash of their cell. Its seed is random so that no file can make it slow; what is found
     /// does not depend on it.
     table: HashTable<u32>,
-    hasher: RandomState,
+    seed: u64,
 }
 
 impl<'a> Grid<'a> {
     fn new(members: &[u32], positions: &'a [Vec3], within: f64) -> Self {
         let places = members.iter().map(|&v| positions[v as usize].as_dvec3());
         let corner = places.fold(DVec3::INFINITY, DVec3::min);
-        let table = HashTable::with_capacity(members.len() / 2);
-        Self { positions, within, corner, table, hasher: RandomState::new() }
+        let table = HashTable::with_capacity(members.len());
+        Self { positions, within, corner, table, seed: RandomState::new().hash_one(members.len()) }
     }
 
     /// The nearest vertex within the distance; `vertex` itself, which then stays, if there is none.
@@ -245,7 +248,7 @@ impl<'a> Grid<'a> {
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    for &other in self.table.iter_hash(self.hasher.hash_one([x, y, z])) {
+                    for &other in self.table.iter_hash(hash([x, y, z], self.seed)) {
                         let found = (p.distance(self.place(other)), other);
                         if found <= nearest {
                             nearest = found;
@@ -255,9 +258,8 @@ impl<'a> Grid<'a> {
             }
         }
         if nearest.1 == vertex {
-            let Self { positions, table, hasher, .. } = self;
-            let cell = |&v: &u32| cell_of(positions[v as usize].as_dvec3(), self.corner, self.within);
-            let rehash = |v: &u32| hasher.hash_one(cell(v));
+            let Self { positions, within, corner, table, seed } = self;
+            let rehash = |&v: &u32| hash(cell_of(positions[v as usize].as_dvec3(), *corner, *within), *seed);
             table.insert_unique(rehash(&vertex), vertex, rehash);
         }
         nearest.1
@@ -272,9 +274,16 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// Cells twice the distance wide: what is within it lies in at most two along each axis.
+/// Cells four times as wide as the distance: what is within it lies in one along most axes, in two at most.
 fn cell_of(p: DVec3, corner: DVec3, within: f64) -> [i64; 3] {
-    ((p - corner) / (2.0 * within)).floor().as_i64vec3().to_array()
+    ((p - corner) / (4.0 * within)).floor().as_i64vec3().to_array()
+}
+
+/// Cells of one mesh differ in their lowest 21 bits along each axis, so that none have the same number before it is
+/// mixed.
+fn hash(cell: [i64; 3], seed: u64) -> u64 {
+    let number = cell.into_iter().fold(0_u64, |number, c| number << 21 | (c as u64 & 0x1F_FFFF));
+    mixed(number ^ seed)
 }
 
 /// Joins the vertices; how many went, and how many triangles with them.
