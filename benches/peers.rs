@@ -4,7 +4,7 @@
 //! `cargo bench --bench peers [-- eval|mesh|edit]`; `REPS` sets the rounds (15).
 
 use blobtree::{
-    Aabb, BRICK, BRICK_SAMPLES, Brick, Field, NoMeshes, Node, NodeRef, Scene, Shape, Transform, Tree, Warp,
+    Aabb, BRICK, BRICK_SAMPLES, Brick, Field, NoSources, Node, NodeRef, Scene, Shape, Transform, Tree, Warp,
     changed_region,
 };
 use glam::Vec3;
@@ -35,7 +35,7 @@ fn main() {
 fn scene(name: &str) -> NodeRef {
     let path = format!("{}/benches/scenes/{name}.trullo", env!("CARGO_MANIFEST_DIR"));
     let bytes = std::fs::read(&path).expect("the benchmark scenes are in the repository");
-    Scene::from_bytes(&bytes, &mut NoMeshes).expect("the benchmark scenes are legal").root
+    Scene::from_bytes(&bytes, &mut NoSources).expect("the benchmark scenes are legal").root
 }
 
 fn pool(threads: usize) -> ThreadPool {

@@ -1,7 +1,8 @@
 //! The command line as the user writes it.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
+use sketch::stroke::DoodleChoice;
 use std::path::PathBuf;
 
 /// Most pixels in a picture, which bounds memory: about 64 bytes each.
@@ -9,7 +10,7 @@ const MOST_PIXELS: u32 = 1 << 23;
 /// Most worker threads that can be asked for.
 const MOST_THREADS: i64 = 1024;
 
-/// Shapes that always 3D-print without supports: evaluate, mesh, render, convert and check them.
+/// Shapes that always 3D-print without supports: sketch, evaluate, mesh, render, convert and check them.
 #[derive(Debug, Parser)]
 #[command(name = "trullo", version, arg_required_else_help = true, disable_help_subcommand = true)]
 #[command(
@@ -35,6 +36,16 @@ pub enum Verb {
     /// Turn a scene into a mesh for printing.
     #[command(after_help = "Example: trullo mesh snowman.trullo -o snowman.3mf --cell 0.4")]
     Mesh(MeshArgs),
+    /// Turn drawings into solids.
+    ///
+    /// Drawings are SVG pictures, doodles (.ndjson) or Trullo's own strokes (.json). An outline is blown up like
+    /// a balloon, made thick like a biscuit, or turned round like a vase; a line that does not close becomes a
+    /// tube. The scene keeps the strokes, so everything can still be changed. With the name of a mesh the scene is
+    /// meshed at once.
+    #[command(after_help = "Examples:\n  trullo sketch duck.svg -o duck.trullo\n  \
+        trullo sketch body.svg ear.svg ear.svg -o dog.3mf --place 0,0,0 --place -15,0,50 --place 15,0,50 --blend\n  \
+        trullo sketch vase.svg -o vase.stl --as revolve --preview vase.png")]
+    Sketch(SketchArgs),
     /// Write a mesh in another format.
     ///
     /// The format follows from the name: .stl, .obj, .ply or .3mf. A scene is meshed first. Writing .trullo
@@ -95,6 +106,90 @@ pub struct MeshArgs {
     pub no_constraint: bool,
     #[command(flatten)]
     pub common: Common,
+}
+
+/// `trullo sketch`.
+#[derive(Debug, Args)]
+pub struct SketchArgs {
+    /// The drawings: .svg, .ndjson or .json files.
+    #[arg(required = true, value_name = "DRAWING")]
+    pub drawings: Vec<PathBuf>,
+    /// The scene to write, a .trullo file, or a mesh: .stl, .obj, .ply or .3mf.
+    #[arg(short, long, value_name = "OUT", required_unless_present = "preview")]
+    pub output: Option<PathBuf>,
+    /// A picture to write, a .png file: the strokes in blue, the curves made of them in black.
+    #[arg(long, value_name = "OUT.png")]
+    pub preview: Option<PathBuf>,
+    /// What becomes of the drawings; once for all, or once for each.
+    #[arg(long = "as", value_name = "KIND", value_enum)]
+    pub kinds: Vec<SolidKind>,
+    /// Where a drawing's lowest edge stands, mm; once for each drawing. Without it, they stand in a row.
+    #[arg(long = "place", value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point)]
+    pub places: Vec<Vec3>,
+    /// The larger side of each drawing, mm.
+    #[arg(long, value_name = "MM", default_value = "60", value_parser = length)]
+    pub size: f64,
+    /// How thick the solid is, mm: as thick as it is wide if not given.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub thickness: Option<f64>,
+    /// How much thinner an inflation's thin parts are, 0 to 0.9.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = contrast)]
+    pub contrast: f32,
+    /// How much of an inflation's thickness follows the pen's pressure, 0 to 1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
+    pub pressure: f32,
+    /// Round the edges of a sweep with this radius, mm.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub fillet: Option<f64>,
+    /// How far to the right of the drawing's middle the axis of a revolution stands, mm: in the middle if not
+    /// given.
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = coordinate)]
+    pub axis: Option<f64>,
+    /// How far the solids reach to blend with others, mm: 1.2 times their depth if not given.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub falloff: Option<f64>,
+    /// Fill the holes that closed lines inside an outline make.
+    #[arg(long)]
+    pub fill_holes: bool,
+    /// Let the solids flow into each other.
+    #[arg(long)]
+    pub blend: bool,
+    /// Which doodle of an .ndjson file: its line, counted from 1, or its `key_id` [default: 1].
+    #[arg(long, value_name = "LINE|KEY", value_parser = doodle)]
+    pub doodle: Option<DoodleChoice>,
+    #[command(flatten)]
+    pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// What a drawing becomes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum SolidKind {
+    /// Inflated if it has an outline, else a tube.
+    #[default]
+    Auto,
+    /// Blown up like a balloon.
+    Inflate,
+    /// Thick like a biscuit, with flat sides.
+    Sweep,
+    /// Turned round like a vase.
+    Revolve,
+    /// Tubes along the lines.
+    Line,
+}
+
+impl SolidKind {
+    /// As in `--as`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Inflate => "inflate",
+            Self::Sweep => "sweep",
+            Self::Revolve => "revolve",
+            Self::Line => "line",
+        }
+    }
 }
 
 /// `trullo convert`.
@@ -195,6 +290,7 @@ impl Verb {
             Self::Eval(a) => a.common,
             Self::Tree(a) => a.common,
             Self::Mesh(a) => a.common,
+            Self::Sketch(a) => a.common,
             Self::Convert(a) => a.common,
             Self::Render(a) => a.common,
             Self::Check(a) => a.common,
@@ -215,6 +311,33 @@ fn point(text: &str) -> Result<Vec3, String> {
 fn length(text: &str) -> Result<f64, String> {
     let legal = text.parse().ok().filter(|mm| (1e-4..=1e6).contains(mm));
     legal.ok_or_else(|| "a length is a number of millimetres from 0.0001 to 1000000".to_owned())
+}
+
+/// A coordinate that a shape can have.
+fn coordinate(text: &str) -> Result<f64, String> {
+    let legal = text.parse().ok().filter(|mm: &f64| mm.abs() <= 1e5);
+    legal.ok_or_else(|| "a coordinate is a number of millimetres from -100000 to 100000".to_owned())
+}
+
+fn share(text: &str) -> Result<f32, String> {
+    let legal = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    legal.ok_or_else(|| "a share is a number from 0 to 1".to_owned())
+}
+
+fn contrast(text: &str) -> Result<f32, String> {
+    share(text)
+        .ok()
+        .filter(|&share| share <= 0.9)
+        .ok_or_else(|| "a contrast is a number from 0 to 0.9".to_owned())
+}
+
+/// Lines are counted from 1; what is too large for a line is a key.
+fn doodle(text: &str) -> Result<DoodleChoice, String> {
+    match text.parse::<usize>() {
+        Ok(0) => Err("lines are counted from 1".to_owned()),
+        Ok(line) if line < 1_000_000 => Ok(DoodleChoice::Index(line - 1)),
+        _ => Ok(DoodleChoice::Key(text.to_owned())),
+    }
 }
 
 /// Width and height of a picture.

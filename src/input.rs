@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::output::{self, Report};
-use blobtree::{MeshReference, MeshSource, Scene};
+use blobtree::{Drawing, MeshReference, Scene, SceneSources, Template};
 use mesh::io::{Attachments, Format, Loaded, ReadLimits};
 use mesh::{Mesh, MeshDistance};
 use sha2::{Digest, Sha256};
@@ -85,7 +85,7 @@ fn read(path: &Path, prefer: Prefer) -> Result<Input, Failure> {
         mesh::io::read(file, format, &ReadLimits::default()).map_err(|e| Failure::of(path, e))?;
     match &loaded.attachments.scene {
         Some(text) if prefer == Prefer::Scene => {
-            let scene = Scene::from_bytes(text, &mut MeshesBeside(path))
+            let scene = Scene::from_bytes(text, &mut Beside(path))
                 .map_err(|e| Failure::of(path, format!("the scene in this 3MF file: {e}")))?;
             Ok(Input::Scene(scene))
         }
@@ -97,7 +97,23 @@ fn read(path: &Path, prefer: Prefer) -> Result<Input, Failure> {
 }
 
 fn read_scene(path: &Path, file: File) -> Result<Scene, Failure> {
-    Scene::read(BufReader::new(file), &mut MeshesBeside(path)).map_err(|e| Failure::of(path, e))
+    Scene::read(BufReader::new(file), &mut Beside(path)).map_err(|e| Failure::of(path, e))
+}
+
+/// The content of a file of at most `limit` bytes.
+///
+/// Errors: a file that cannot be read or is larger.
+pub fn read_whole(path: &Path, limit: usize) -> Result<Vec<u8>, Failure> {
+    let file = open_file(path).map_err(|what| Failure::of(path, what))?;
+    let mut bytes = Vec::new();
+    // One byte more than legal, so that a file which is too large is told from one that just fits.
+    file.take(limit as u64 + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| Failure::of(path, format!("cannot be read: {}", output::told(&e))))?;
+    if bytes.len() > limit {
+        return Err(Failure::of(path, format!("larger than {} MiB, the most that is read", limit >> 20)));
+    }
+    Ok(bytes)
 }
 
 /// Opens an ordinary file: others, such as pipes, might never end.
@@ -140,11 +156,11 @@ fn scale(path: &Path, mesh: &mut Mesh, height: f64) -> Result<(), Failure> {
         .ok_or_else(|| Failure::of(path, format!("flat, so it cannot be scaled to a height of {height} mm")))
 }
 
-/// Finds the meshes that a scene names, beside the scene's file.
-struct MeshesBeside<'a>(&'a Path);
+/// Finds the meshes that a scene names, beside the scene's file, and solves its drawings.
+struct Beside<'a>(&'a Path);
 
-impl MeshSource for MeshesBeside<'_> {
-    fn load(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+impl SceneSources for Beside<'_> {
+    fn mesh(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {
         let name = Path::new(&reference.file);
         if name.components().any(|part| matches!(part, Component::Prefix(_) | Component::RootDir)) {
             return Err("a scene names its meshes relative to its own folder".into());
@@ -161,6 +177,10 @@ impl MeshSource for MeshesBeside<'_> {
         let format = format.ok_or_else(|| told("a scene, where a mesh is needed".into()))?;
         let loaded = mesh::io::read(file, format, &limits).map_err(|e| told(e.to_string()))?;
         MeshDistance::new(&loaded.mesh).map(Arc::new).map_err(|e| told(e.to_string()))
+    }
+
+    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String> {
+        sketch::solve(drawing, falloff).map_err(|reason| reason.to_string())
     }
 }
 

@@ -1,11 +1,13 @@
 //! Trullo on the command line: reads arguments, opens files, asks the other rooms, and shows what they say.
 
 mod cli;
+mod drawing;
 mod failure;
 mod input;
 mod job;
 mod meshing;
 mod output;
+mod preview;
 mod progress;
 mod render;
 mod resolution;
@@ -86,6 +88,7 @@ fn run(verb: &Verb, cancel: &Cancel) -> Result<(Report, Timings), Failure> {
                 Verb::Eval(args) => verbs::eval::run(args, &mut job),
                 Verb::Tree(args) => verbs::tree::run(args, &mut job),
                 Verb::Mesh(args) => verbs::mesh::run(args, &mut job),
+                Verb::Sketch(args) => verbs::sketch::run(args, &mut job),
                 Verb::Convert(args) => verbs::convert::run(args, &mut job),
                 Verb::Render(args) => verbs::render::run(args, &mut job),
                 Verb::Check(args) => verbs::check::run(args, &mut job),

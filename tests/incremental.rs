@@ -72,6 +72,10 @@ fn dragged(primitive: &Primitive, rng: &mut Rng) -> Primitive {
         Primitive::Ellipsoid(p) => (p.center, p.radii) = (p.center + by, p.radii * grow),
         Primitive::HalfSpace(p) => p.point += by,
         Primitive::Mesh(p) => p.falloff *= grow,
+        Primitive::Inflation(p) => p.plane.origin += by,
+        Primitive::LinearSweep(p) => (p.plane.origin, p.length) = (p.plane.origin + by, p.length * grow),
+        Primitive::Revolution(p) => p.plane.origin += by,
+        Primitive::PathSweep(p) => p.path.iter_mut().for_each(|q| *q += by),
     }
     primitive
 }

@@ -1,4 +1,4 @@
-//! Meshes keep the corners of boxes, however these are turned, and their edges but for a few places.
+//! Meshes keep the corners of boxes, however these are turned, and their edges but for a few places near corners.
 
 mod geometry;
 
@@ -55,9 +55,9 @@ impl Off {
 /// How far features may be off, in cells.
 const CLOSE: f32 = 0.05;
 
-/// The share of points on edges that may be farther off: where one cell would have to mark two edges. The goal
-/// is none; 0.24 % was reached on boxes and 0.56 % on rims, all within half a cell.
-const MOST_CUT_OFF: f32 = 0.004;
+/// The share of points on edges that may be farther off: where a triangle joins the edges that meet in a corner,
+/// past that corner. The goal is none.
+const MOST_CUT_OFF: f32 = 0.0015;
 
 fn off(mesh: &Mesh, corners: &[Vec3; 8], mm: f32) -> Off {
     let to_vertex =
@@ -110,18 +110,17 @@ fn a_turned_box_keeps_its_8_corners_and_nearly_all_of_its_12_edges() {
 }
 
 #[test]
-fn a_box_along_the_lattice_keeps_its_corners_and_its_edges_unless_it_is_just_beside_a_lattice_plane() {
+fn a_box_along_the_lattice_keeps_its_8_corners_and_its_12_edges_wherever_its_faces_are() {
     let mut bad = Vec::new();
     // Faces exactly on lattice planes, between them, and just beside.
-    for offset in [0.0_f32, 0.25, 0.5, 0.499, 0.45, 0.05, 1e-3, 1e-4, -1e-4, -1e-3] {
+    for offset in [0.0_f32, 0.25, 0.5, 0.499, 0.45, 0.05, 2e-3, 1e-3, 3e-4, 1e-4, -1e-4, -3e-4, -1e-3, -2e-3]
+    {
         let transform = Transform { translate: Vec3::splat(offset), ..Transform::default() };
         let half = Vec3::new(10.0, 6.0, 4.0);
         let mesh = meshed(&cuboid([0.0; 3], half * 2.0).warp(Warp::Transform(transform.clone())), 0.5);
         assert_sound(&mesh, 0.5, &format!("box moved by {offset}"));
         let off = off(&mesh, &corners(half, &transform), 0.5);
-        // Faces within a margin of a lattice plane hide from the lattice edges that end there.
-        let beside = offset != 0.0 && (2.0 * offset - (2.0 * offset).round()).abs() < 0.004;
-        if off.corner > CLOSE || !beside && off.worst_edge() > CLOSE {
+        if off.corner > CLOSE || off.worst_edge() > CLOSE {
             let (corner, edge, share) = (off.corner, off.worst_edge(), off.cut_off());
             bad.push(format!("moved by {offset}: corner {corner}, edge {edge}, {share} edge points"));
         }

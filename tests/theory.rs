@@ -3,12 +3,18 @@
 mod geometry;
 
 use blobtree::build::*;
-use blobtree::{AffineMap, Axis, Field, Node, Transform, Tree, Warp};
+use blobtree::random::RandomTree;
+use blobtree::{
+    Aabb, AffineMap, Axis, Field, ImportedMesh, Node, Primitive, Sample, Shape, TYPE_NAMES, Transform, Tree,
+    Warp,
+};
 use fastrand::Rng;
 use geometry::*;
 use glam::{DVec3, Mat3, Quat, Vec3};
+use mesh::MeshDistance;
 use std::f32::consts::TAU;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// A solid with what geometry knows about it.
 struct Known {
@@ -398,5 +404,140 @@ fn the_middle_of_a_mesh_is_that_of_the_solid() {
         let mass = meshed(&node, solid.size / 64.0).mass().expect("it has a volume");
         let off = mass.centre.distance(DVec3::new(5.0, -7.0, 11.0));
         assert!(off < 1e-3 * f64::from(solid.size), "{}: the centre of mass is off by {off} mm", solid.name);
+    }
+}
+
+/// Random nodes of one type; operators and warps stand on primitives.
+struct Nodes {
+    random: RandomTree,
+    meshes: Vec<Arc<MeshDistance>>,
+    rng: Rng,
+}
+
+impl Nodes {
+    fn new(seed: u64) -> Self {
+        let meshes = [ring(), brick(), potato()].map(|solid| {
+            let mesh = meshed(&solid.node.rotate_degrees([20.0, 30.0, 40.0]), solid.size / 24.0);
+            Arc::new(MeshDistance::new(&mesh).expect("meshes of solids are sound"))
+        });
+        let (random, rng) = (RandomTree::new(seed), Rng::with_seed(seed));
+        Self { random, meshes: meshes.into(), rng }
+    }
+
+    fn of_type(&mut self, name: &str) -> Node {
+        if name == "mesh" {
+            return Node::new(Shape::Primitive(Primitive::Mesh(ImportedMesh {
+                file: "some.stl".into(),
+                sha256: "0".repeat(64),
+                falloff: 1.0 + 9.0 * self.rng.f32(),
+                distance: self.meshes[self.rng.usize(..self.meshes.len())].clone(),
+            })));
+        }
+        for _ in 0..10_000 {
+            let shape = match self.rng.u32(..3) {
+                0 => Shape::Primitive(self.random.primitive()),
+                1 => {
+                    let operator = self.random.operator();
+                    let count = self.rng.usize(2..=3);
+                    let child = |_| Node::new(Shape::Primitive(self.random.primitive())).into();
+                    Shape::Operator(operator, (0..count).map(child).collect())
+                }
+                _ => {
+                    let warp = self.random.warp();
+                    Shape::Warp(warp, Node::new(Shape::Primitive(self.random.primitive())).into())
+                }
+            };
+            let node = Node::new(shape);
+            if node.type_name() == name {
+                return node;
+            }
+        }
+        panic!("no random tree has a node of type {name}");
+    }
+}
+
+/// Gradients by central differences with the steps that suit single precision, extrapolated from two sizes.
+///
+/// `None` within a step of a crease or a kink, where there is no single gradient to compare: at an edge of a solid,
+/// where a warp ends, at places as far from one face of a mesh as from another. There the two sizes disagree, or,
+/// if the kink is close to the very place, the field bends in proportion to the step instead of its square.
+fn central_differences(tree: &Tree, places: &[(Vec3, f32)]) -> Vec<Option<Vec3>> {
+    let steps = [3e-3, 6e-3];
+    let mut points = Vec::new();
+    for (p, scale) in places {
+        points.push(*p);
+        for (step, axis) in steps.into_iter().flat_map(|step| Vec3::AXES.map(|axis| (step, axis))) {
+            points.extend([*p + axis * (step * scale), *p - axis * (step * scale)]);
+        }
+    }
+    let mut values = vec![0.0; points.len()];
+    tree.sampler().values(&points, &mut values);
+    // In double precision only the subtraction is left to chance.
+    let value = |at: usize| f64::from(values[at]);
+    let step = |at: usize| f64::from((points[at] - points[at + 1]).length());
+    let slope = |at: usize| ((value(at) - value(at + 1)) / step(at)) as f32;
+    let gradient = |at: usize| Vec3::new(slope(at), slope(at + 2), slope(at + 4));
+    let extrapolated = |(i, (_, scale)): (usize, &(Vec3, f32))| {
+        let (middle, near, far) = (13 * i, 13 * i + 1, 13 * i + 7);
+        let (fine, coarse) = (gradient(near), gradient(far));
+        let size = fine.length().max(1e-3 / scale);
+        let bend = |at: usize| value(at) + value(at + 1) - 2.0 * value(middle);
+        let jump = |a: usize| ((4.0 * bend(near + a) - bend(far + a)) / step(near + a)) as f32;
+        let jumps = Vec3::new(jump(0), jump(2), jump(4));
+        let is_smooth = (fine - coarse).length() <= 5e-4 * size && jumps.length() <= 1e-3 * size;
+        is_smooth.then(|| fine + (fine - coarse) / 3.0)
+    };
+    places.iter().enumerate().map(extrapolated).collect()
+}
+
+/// Errors of the gradients at random places of a node, and how many places were close to a kink.
+fn gradient_errors(node: &Node, rng: &mut Rng) -> (Vec<(f32, Vec3)>, usize) {
+    let tree = Tree::new(node);
+    let arena = tree.support().intersection(&Aabb::around(Vec3::ZERO, Vec3::splat(200.0)));
+    if arena.is_empty() {
+        return (Vec::new(), 0);
+    }
+    let points: Vec<Vec3> = (0..300).map(|_| point_in(rng, &arena)).collect();
+    let mut samples = vec![Sample::default(); points.len()];
+    tree.sampler().samples(&points, &mut samples);
+    let size = arena.size().min_element().min(60.0);
+    // Where the field is nearly flat, or steep far from the origin, single precision leaves nothing to compare.
+    let tried = points.iter().zip(&samples).filter_map(|(p, sample)| {
+        let steep = sample.gradient.length();
+        let scale = size.min(1.0 / steep);
+        let lost = 5e-7 * p.length() / (3e-3 * scale);
+        let is_clear = sample.value >= 0.02 && steep * scale >= 0.05 && lost <= 5e-4;
+        is_clear.then_some(((*p, scale), sample.gradient))
+    });
+    let (places, gradients): (Vec<_>, Vec<_>) = tried.unzip();
+    let expected = central_differences(&tree, &places);
+    let kinks = expected.iter().filter(|e| e.is_none()).count();
+    let errors = gradients.iter().zip(&expected).zip(&places).filter_map(|((found, expected), (p, _))| {
+        let expected = (*expected)?;
+        Some(((*found - expected).length() / expected.length(), *p))
+    });
+    (errors.collect(), kinks)
+}
+
+#[test]
+fn gradients_are_those_of_central_differences_at_ten_thousand_places_of_every_type_of_node() {
+    let seed = 11;
+    let (mut nodes, mut rng) = (Nodes::new(seed), Rng::with_seed(seed));
+    for name in TYPE_NAMES {
+        let (mut tried, mut kinks, mut worst, mut round) = (0, 0, 0.0_f32, 0);
+        while tried < 10_000 {
+            let node = nodes.of_type(name);
+            let (errors, near_kinks) = gradient_errors(&node, &mut rng);
+            tried += errors.len();
+            kinks += near_kinks;
+            for (error, p) in errors {
+                worst = worst.max(error);
+                assert!(error < 1e-3, "{name}, seed {seed}, round {round}: {error:.1e} off at {p}: {node:?}");
+            }
+            round += 1;
+            assert!(round < 20_000, "{name}: only {tried} places to compare");
+        }
+        println!("{name}: {tried} places, {worst:.1e} off at most, {kinks} more within a step of a kink");
+        assert!(kinks < tried, "{name}: too many places cannot be compared");
     }
 }

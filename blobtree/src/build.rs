@@ -29,8 +29,12 @@ use crate::primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, PolylinePoint, Primitive,
     Segment, Torus,
 };
+use crate::sketched::{
+    Drawing, Inflation, LinearSweep, PathSweep, Profile, Revolution, RevolutionAxis, SketchPlane, Template,
+};
 use crate::warp::{Axis, Bend, Taper, Transform, Twist, Warp};
 use glam::Vec3;
+use std::sync::Arc;
 
 /// A ball: centre and radius, mm.
 pub fn point(center: impl Into<Vec3>, radius: f32) -> Node {
@@ -103,6 +107,69 @@ pub fn half_space(point: impl Into<Vec3>, normal: impl Into<Vec3>) -> Node {
     primitive(Primitive::HalfSpace(HalfSpace { point, normal, extent: 500.0, falloff: 5.0 }))
 }
 
+/// A drawing blown up like a cushion, upright in the plane y = 0: the drawing and the template solved for it.
+pub fn inflation(drawing: impl Into<Arc<Drawing>>, template: impl Into<Arc<Template>>) -> Node {
+    primitive(Primitive::Inflation(Inflation {
+        drawing: drawing.into(),
+        plane: SketchPlane::default(),
+        thickness: None,
+        contrast: 0.0,
+        pressure: 0.0,
+        profile: Profile::Round,
+        falloff: None,
+        template: template.into(),
+    }))
+}
+
+/// A drawing moved along its normal, with sharp ends, its middle upright in the plane y = 0: the drawing, the
+/// template solved for it, and the length, mm.
+pub fn linear_sweep(
+    drawing: impl Into<Arc<Drawing>>,
+    template: impl Into<Arc<Template>>,
+    length: f32,
+) -> Node {
+    let (drawing, template, plane) = (drawing.into(), template.into(), SketchPlane::default());
+    let (offset, fillet, falloff) = (0.0, 0.0, None);
+    primitive(Primitive::LinearSweep(LinearSweep {
+        drawing,
+        plane,
+        length,
+        offset,
+        fillet,
+        falloff,
+        template,
+    }))
+}
+
+/// A drawing turned about its y axis, which is the z axis of space: the drawing and the template solved for it.
+pub fn revolution(drawing: impl Into<Arc<Drawing>>, template: impl Into<Arc<Template>>) -> Node {
+    primitive(Primitive::Revolution(Revolution {
+        drawing: drawing.into(),
+        plane: SketchPlane::default(),
+        axis: RevolutionAxis::default(),
+        side: None,
+        falloff: None,
+        template: template.into(),
+    }))
+}
+
+/// A drawing, upright in the plane y = 0, moved along a path, with sharp ends: the drawing, the template solved
+/// for it, and the points of the path, mm.
+pub fn path_sweep<P: Into<Vec3>>(
+    drawing: impl Into<Arc<Drawing>>,
+    template: impl Into<Arc<Template>>,
+    path: impl IntoIterator<Item = P>,
+) -> Node {
+    primitive(Primitive::PathSweep(PathSweep {
+        drawing: drawing.into(),
+        plane: SketchPlane::default(),
+        path: path.into_iter().map(Into::into).collect(),
+        fillet: 0.0,
+        falloff: None,
+        template: template.into(),
+    }))
+}
+
 /// All of them.
 pub fn union<N: Into<NodeRef>>(children: impl IntoIterator<Item = N>) -> Node {
     operator(Operator::Union, children)
@@ -171,7 +238,8 @@ pub trait Build: Into<NodeRef> + Sized {
         Node { construction: true, ..self.into_node() }
     }
 
-    /// Sets how far a primitive's influence reaches beyond its surface, mm. Other nodes stay as they are.
+    /// Sets how far a primitive's influence reaches beyond its surface, mm; that of a drawn one no farther than
+    /// its template was solved for. Other nodes stay as they are.
     fn with_falloff(self, width: f32) -> Node {
         let mut node = self.into_node();
         if let Shape::Primitive(primitive) = &mut node.shape {
@@ -271,5 +339,9 @@ fn set_falloff(primitive: &mut Primitive, width: f32) {
         Primitive::Ellipsoid(p) => p.falloff = Some(width),
         Primitive::HalfSpace(p) => p.falloff = width,
         Primitive::Mesh(p) => p.falloff = width,
+        Primitive::Inflation(p) => p.falloff = Some(width),
+        Primitive::LinearSweep(p) => p.falloff = Some(width),
+        Primitive::Revolution(p) => p.falloff = Some(width),
+        Primitive::PathSweep(p) => p.falloff = Some(width),
     }
 }

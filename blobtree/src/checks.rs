@@ -1,6 +1,6 @@
 //! Legal ranges of parameters, in one place.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::fmt::Debug;
 
 /// Shortest length that a shape may have, mm.
@@ -51,6 +51,15 @@ pub(crate) fn place(field: &str, value: Vec3) -> Result<(), ParameterError> {
         Ok(())
     } else {
         Err(ParameterError::new(field, value, "three coordinates of -100000 to 100000 mm"))
+    }
+}
+
+/// A place in a drawing: each coordinate within 100,000 mm of the origin.
+pub(crate) fn place_in_plane(field: &str, value: Vec2) -> Result<(), ParameterError> {
+    if value.is_finite() && value.abs().max_element() <= LONGEST {
+        Ok(())
+    } else {
+        Err(ParameterError::new(field, value, "two coordinates of -100000 to 100000 mm"))
     }
 }
 

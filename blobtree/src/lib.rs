@@ -67,11 +67,11 @@
 //!
 //! ```
 //! use blobtree::build::point;
-//! use blobtree::{NoMeshes, Scene};
+//! use blobtree::{NoSources, Scene};
 //!
 //! let scene = Scene::new(point([0., 0., 10.], 10.)).titled("Ball");
 //! let text = scene.to_text()?;
-//! assert_eq!(Scene::from_bytes(text.as_bytes(), &mut NoMeshes)?, scene);
+//! assert_eq!(Scene::from_bytes(text.as_bytes(), &mut NoSources)?, scene);
 //! # Ok::<(), blobtree::SceneError>(())
 //! ```
 //!
@@ -112,6 +112,7 @@ mod primitive;
 pub mod random;
 mod scalar;
 mod scene;
+mod sketched;
 mod warp;
 mod warp_map;
 
@@ -134,7 +135,11 @@ pub use primitive::{
     Segment, Torus,
 };
 pub use scene::{
-    ColorError, MAX_DEPTH, MAX_FILE_BYTES, MAX_NODES, MAX_OBJECTS, MeshReference, MeshSource, NoMeshes,
-    Scene, SceneError, SceneProblem, TYPE_NAMES, TextPosition, VERSION, scene_schema,
+    ColorError, MAX_DEPTH, MAX_FILE_BYTES, MAX_NODES, MAX_OBJECTS, MeshReference, NoSources, Scene,
+    SceneError, SceneProblem, SceneSources, TYPE_NAMES, TextPosition, VERSION, scene_schema,
+};
+pub use sketched::{
+    Drawing, DrawnPoint, DrawnStroke, FieldImage, Holes, Inflation, LinearSweep, PathSweep, Profile,
+    Revolution, RevolutionAxis, Side, SketchPlane, Template,
 };
 pub use warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};

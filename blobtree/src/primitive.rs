@@ -5,9 +5,11 @@
 
 use crate::checks::{Checked, ParameterError, length, one_of_length, place, unit};
 use crate::imported::ImportedMesh;
+use crate::sketched::{Drawing, Inflation, LinearSweep, PathSweep, Revolution, Template};
 use glam::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A solid without children.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +38,14 @@ pub enum Primitive {
     HalfSpace(HalfSpace),
     /// A triangle mesh from a file.
     Mesh(ImportedMesh),
+    /// A drawing blown up like a cushion.
+    Inflation(Inflation),
+    /// A drawing moved along its plane's normal.
+    LinearSweep(LinearSweep),
+    /// A drawing turned about an axis.
+    Revolution(Revolution),
+    /// A drawing moved along a path.
+    PathSweep(PathSweep),
 }
 
 impl Primitive {
@@ -54,6 +64,10 @@ impl Primitive {
             Self::Ellipsoid(_) => "ellipsoid",
             Self::HalfSpace(_) => "half_space",
             Self::Mesh(_) => "mesh",
+            Self::Inflation(_) => "inflation",
+            Self::LinearSweep(_) => "sweep",
+            Self::Revolution(_) => "revolution",
+            Self::PathSweep(_) => "path_sweep",
         }
     }
 
@@ -74,7 +88,32 @@ impl Primitive {
             Self::Ellipsoid(p) => p.check(),
             Self::HalfSpace(p) => p.check(),
             Self::Mesh(p) => p.check(),
+            Self::Inflation(p) => p.check(),
+            Self::LinearSweep(p) => p.check(),
+            Self::Revolution(p) => p.check(),
+            Self::PathSweep(p) => p.check(),
         }
+    }
+}
+
+/// What drawn primitives have in common: the drawing, how far it is to reach, and the template solved for both.
+pub(crate) struct Drawn<'a> {
+    pub drawing: &'a mut Arc<Drawing>,
+    pub falloff: Option<f32>,
+    pub template: &'a mut Arc<Template>,
+}
+
+impl Primitive {
+    /// What it is drawn with, if it is.
+    pub(crate) fn drawn(&mut self) -> Option<Drawn<'_>> {
+        let (drawing, falloff, template) = match self {
+            Self::Inflation(p) => (&mut p.drawing, p.falloff, &mut p.template),
+            Self::LinearSweep(p) => (&mut p.drawing, p.falloff, &mut p.template),
+            Self::Revolution(p) => (&mut p.drawing, p.falloff, &mut p.template),
+            Self::PathSweep(p) => (&mut p.drawing, p.falloff, &mut p.template),
+            _ => return None,
+        };
+        Some(Drawn { drawing, falloff, template })
     }
 }
 

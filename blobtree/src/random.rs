@@ -1,7 +1,10 @@
 //! Seeded random trees, for tests and benches.
 //!
 //! The same seed gives the same tree everywhere. All node types occur except imported meshes, which need a
-//! file; hand one in with [`RandomTree::mesh`].
+//! file, and drawn solids, which need templates; hand a mesh in with [`RandomTree::mesh`], and ask for drawn
+//! solids with [`RandomTree::drawn`].
+
+mod drawn;
 
 use crate::imported::ImportedMesh;
 use crate::node::{Color, Node, NodeRef, Shape};
@@ -10,9 +13,15 @@ use crate::primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, PolylinePoint, Primitive,
     Segment, Torus,
 };
+use crate::sketched::{
+    Drawing, Inflation, LinearSweep, PathSweep, Profile, Revolution, RevolutionAxis, Side, SketchPlane,
+    Template,
+};
 use crate::warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};
+pub use drawn::{PolygonSources, polygon_template, stroke};
 use fastrand::Rng;
-use glam::{Mat3, Quat, Vec3};
+use glam::{Mat3, Quat, Vec2, Vec3};
+use std::sync::Arc;
 
 /// Farthest coordinate of a random place, mm.
 const REACH: f32 = 60.0;
@@ -27,12 +36,14 @@ pub struct RandomTree {
     pub children: usize,
     /// Used as a primitive among the others, if there is one.
     pub mesh: Option<ImportedMesh>,
+    /// Whether drawn solids occur among the primitives. Default: no.
+    pub drawn: bool,
 }
 
 impl RandomTree {
     /// With the defaults above.
     pub fn new(seed: u64) -> Self {
-        Self { rng: Rng::with_seed(seed), depth: 8, children: 4, mesh: None }
+        Self { rng: Rng::with_seed(seed), depth: 8, children: 4, mesh: None, drawn: false }
     }
 
     /// The next tree: an operator or a warp at the root, unless `depth` is 1.
@@ -81,6 +92,9 @@ impl RandomTree {
 
     /// The next primitive.
     pub fn primitive(&mut self) -> Primitive {
+        if self.drawn && self.rng.u32(..15) < 4 {
+            return self.drawn();
+        }
         let falloff = (self.rng.u32(..3) == 0).then(|| self.size());
         match self.rng.u32(..11 + u32::from(self.mesh.is_some())) {
             0 => Primitive::Point(Point { center: self.place(), radius: self.size(), falloff }),
@@ -121,6 +135,71 @@ impl RandomTree {
                 falloff: self.size(),
             }),
             _ => Primitive::Mesh(self.mesh.clone().expect("counted only if it is there")),
+        }
+    }
+
+    fn drawn(&mut self) -> Primitive {
+        let drawing = drawn::drawing(&mut self.rng);
+        let falloff = (self.rng.u32(..3) == 0).then(|| self.size());
+        // Stars enclose something, whatever their points.
+        let template = Arc::new(polygon_template(&drawing, falloff, 64).unwrap_or_default());
+        let turn = self.turn();
+        let plane = SketchPlane { origin: self.place(), right: turn * Vec3::X, up: turn * Vec3::Y };
+        self.drawn_from(Arc::new(drawing), plane, falloff, template)
+    }
+
+    fn drawn_from(
+        &mut self,
+        drawing: Arc<Drawing>,
+        plane: SketchPlane,
+        falloff: Option<f32>,
+        template: Arc<Template>,
+    ) -> Primitive {
+        match self.rng.u32(..4) {
+            0 => Primitive::Inflation(Inflation {
+                drawing,
+                plane,
+                thickness: self.rng.bool().then(|| self.size()),
+                contrast: if self.rng.bool() { 0.0 } else { self.between(0.0, 0.9) },
+                pressure: if self.rng.bool() { 0.0 } else { self.rng.f32() },
+                profile: if self.rng.bool() { Profile::Round } else { Profile::Flat },
+                falloff,
+                template,
+            }),
+            1 => {
+                let length = self.size();
+                let fillet = if self.rng.bool() { 0.0 } else { self.between(0.0, 0.5) * length };
+                let offset = self.between(-20.0, 20.0);
+                Primitive::LinearSweep(LinearSweep {
+                    drawing,
+                    plane,
+                    length,
+                    offset,
+                    fillet,
+                    falloff,
+                    template,
+                })
+            }
+            2 => {
+                let at = Vec2::new(self.between(-30.0, 30.0), 0.0);
+                let axis = RevolutionAxis {
+                    at,
+                    direction: self.turn().mul_vec3(Vec3::X).truncate() + Vec2::Y * 1.5,
+                };
+                let side = [None, Some(Side::Left), Some(Side::Right), Some(Side::Both)][self.rng.usize(..4)];
+                Primitive::Revolution(Revolution { drawing, plane, axis, side, falloff, template })
+            }
+            _ => {
+                let (mut at, mut ahead) = (plane.origin, self.direction());
+                let mut path = vec![at];
+                for _ in 0..self.rng.usize(1..24) {
+                    ahead = (ahead + 0.7 * self.direction()).normalize_or(Vec3::Z);
+                    at += ahead * self.between(1.0, 12.0);
+                    path.push(at);
+                }
+                let fillet = if self.rng.bool() { 0.0 } else { self.size() / 4.0 };
+                Primitive::PathSweep(PathSweep { drawing, plane, path, fillet, falloff, template })
+            }
         }
     }
 
@@ -257,10 +336,11 @@ mod tests {
     fn random_trees_are_legal_and_repeatable_and_of_all_types() {
         let mut types = BTreeSet::new();
         for seed in 0..300 {
-            let tree = RandomTree::new(seed).tree();
+            let random = || RandomTree { drawn: seed % 2 == 0, ..RandomTree::new(seed) }.tree();
+            let tree = random();
             let scene = Scene::new(tree.clone());
             assert_eq!(scene.check(), Ok(()), "seed {seed}");
-            assert_eq!(tree, RandomTree::new(seed).tree(), "seed {seed}");
+            assert_eq!(tree, random(), "seed {seed}");
             collect_types(&tree, &mut types);
         }
         let expected: BTreeSet<&str> = TYPE_NAMES.into_iter().filter(|name| *name != "mesh").collect();

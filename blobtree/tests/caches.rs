@@ -3,10 +3,13 @@
 use blobtree::build::{Build, cuboid, cylinder, point, sum, union};
 use blobtree::random::RandomTree;
 use blobtree::{
-    Aabb, BRICK_SAMPLES, Brick, CachePolicy, CacheStore, Field, ISO, Node, NodeRef, Tree, changed_region,
+    Aabb, BRICK_SAMPLES, Brick, CachePolicy, CacheStore, Field, ISO, ImportedMesh, Node, NodeRef, Primitive,
+    Shape, Tree, changed_region,
 };
 use fastrand::Rng;
 use glam::Vec3;
+use mesh::MeshDistance;
+use std::sync::Arc;
 
 const EVERYWHERE: CachePolicy = CachePolicy { least_cost: 2, cells: 128 };
 
@@ -127,6 +130,51 @@ fn after_moving_one_of_a_thousand_blobs_caches_save_nine_tenths_of_the_work() {
     assert!(store.evaluations() <= filled, "an undone state must find its caches warm");
 }
 
+/// A torus of triangles, smooth to the eye.
+fn imported_ring() -> NodeRef {
+    let (around, across) = (96, 32);
+    let place = |i: usize, j: usize| {
+        let turn = std::f32::consts::TAU;
+        let ((sin_u, cos_u), (sin_v, cos_v)) =
+            ((turn * i as f32 / around as f32).sin_cos(), (turn * j as f32 / across as f32).sin_cos());
+        Vec3::new((20.0 + 7.0 * cos_v) * cos_u, (20.0 + 7.0 * cos_v) * sin_u, 7.0 * sin_v)
+    };
+    let number = |i: usize, j: usize| (i % around * across + j % across) as u32;
+    let positions = (0..around * across).map(|at| place(at / across, at % across)).collect();
+    let quads = (0..around * across).map(|at| (at / across, at % across));
+    let triangles = quads.flat_map(|(i, j)| {
+        let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    let ring = mesh::Mesh { positions, triangles: triangles.collect() };
+    Node::new(Shape::Primitive(Primitive::Mesh(ImportedMesh {
+        file: "ring.stl".into(),
+        sha256: "0".repeat(64),
+        falloff: 4.0,
+        distance: Arc::new(MeshDistance::new(&ring).expect("it has triangles")),
+    })))
+    .into()
+}
+
+#[test]
+fn an_imported_mesh_is_searched_a_second_time_only_where_samples_cannot_serve() {
+    let root = imported_ring();
+    let exact = Tree::new(&root);
+    let cached = CacheStore::new(CachePolicy::default()).tree(&root);
+    let part = Aabb::around(Vec3::new(24.0, 0.0, 4.0), Vec3::splat(7.0));
+    let mut rng = Rng::with_seed(1);
+    let points: Vec<Vec3> = (0..4000).map(|_| point_in(&mut rng, &part)).collect();
+    let (mut a, mut b) = (vec![0.0; points.len()], vec![0.0; points.len()]);
+    exact.sampler().values(&points, &mut a);
+    cached.sampler().values(&points, &mut b);
+    for ((p, a), b) in points.iter().zip(&a).zip(&b) {
+        assert!((a - b).abs() < 0.01, "at {p}: {b} instead of {a}");
+    }
+    let share = cached.evaluations() as f64 / exact.evaluations() as f64;
+    println!("{:.1} % of the places are evaluated exactly", 100.0 * share);
+    assert!(share < 0.3, "{share}");
+}
+
 #[test]
 fn edits_are_not_felt_outside_the_changed_region() {
     for seed in 0..300 {
@@ -162,9 +210,9 @@ fn with_leaf(node: &NodeRef, path: &[usize], leaf: Node) -> NodeRef {
     let child = with_leaf(&node.children()[*first], rest, leaf);
     let mut copy = Node::clone(node);
     match &mut copy.shape {
-        blobtree::Shape::Operator(_, children) => children[*first] = child,
-        blobtree::Shape::Warp(_, only) => *only = child,
-        blobtree::Shape::Primitive(_) => unreachable!("paths lead through inner nodes"),
+        Shape::Operator(_, children) => children[*first] = child,
+        Shape::Warp(_, only) => *only = child,
+        Shape::Primitive(_) => unreachable!("paths lead through inner nodes"),
     }
     copy.into()
 }

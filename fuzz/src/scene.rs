@@ -1,23 +1,42 @@
 //! Scenes: reading, writing, evaluating.
 
-use blobtree::{Aabb, Field, NoMeshes, Node, Scene, Tree};
+use blobtree::random::PolygonSources;
+use blobtree::{Aabb, Drawing, Field, MeshReference, Node, Scene, SceneSources, Template, Tree};
 use glam::Vec3;
+use mesh::MeshDistance;
+use std::sync::Arc;
 
 /// The largest tree that is evaluated; shared nodes count wherever they stand.
 const MOST_NODES: usize = 2000;
 
 /// Reads a scene; if there is one, it must be legal, come back the same from its text, and have a finite field.
 pub fn read_scene(data: &[u8]) {
-    let Ok(scene) = Scene::from_bytes(data, &mut NoMeshes) else {
+    let Ok(scene) = Scene::from_bytes(data, &mut FewPoints) else {
         return;
     };
     scene.check().expect("what was read is legal");
     let text = scene.to_text().expect("what was read is writable");
-    let back = Scene::from_bytes(text.as_bytes(), &mut NoMeshes).expect("what was written is readable");
+    let back = Scene::from_bytes(text.as_bytes(), &mut FewPoints).expect("what was written is readable");
     assert!(back == scene, "the scene changed");
     assert!(back.to_text().as_ref() == Ok(&text), "the text changed");
     if has_at_most(&scene.root, &mut { MOST_NODES }) {
         evaluate(&scene.root);
+    }
+}
+
+/// Solves drawings as polygons, unless that would take long.
+struct FewPoints;
+
+impl SceneSources for FewPoints {
+    fn mesh(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+        PolygonSources.mesh(reference)
+    }
+
+    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String> {
+        if drawing.strokes.iter().map(|stroke| stroke.points.len()).sum::<usize>() > 1000 {
+            return Err("it has many points".into());
+        }
+        PolygonSources.template(drawing, falloff)
     }
 }
 

@@ -55,7 +55,7 @@ impl Finder<'_> {
         places.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
         let points = places.into_iter().map(|t| candidate.clamp(guess.point + guess.free * t));
         let point = points.into_iter().find(|&point| self.is_unseen(candidate, point))?;
-        Some(Guess { point, ..guess })
+        Some(Guess { point, meeting: point, ..guess })
     }
 
     /// Whether `point` lies in a cell whose corners are all on one side of the surface.

@@ -36,6 +36,19 @@ pub(crate) struct BrickSurface {
     pub vertices: Arc<Vec<Vertex>>,
     /// Better places for some of them, ascending, if those around allow it.
     pub bold: Vec<Bold>,
+    /// What meets at those of the vertices that may mark edges or corners, ascending.
+    pub facets: Vec<Facets>,
+    /// Whether gradients may jump in the brick.
+    pub creased: bool,
+}
+
+/// The faces that a cell with a sharp edge sees.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Facets {
+    /// Number of the vertex.
+    pub number: u16,
+    /// The faces' unit normals.
+    pub normals: Vec<Vec3>,
 }
 
 /// A feature further from its cell than is safe.
@@ -59,6 +72,12 @@ impl Bold {
 }
 
 impl BrickSurface {
+    /// The normals of the faces that meet at a vertex, as far as they are known.
+    pub fn normals_at(&self, number: usize) -> &[Vec3] {
+        let found = self.facets.binary_search_by_key(&number, |facets| usize::from(facets.number));
+        found.map_or(&[], |n| &self.facets[n].normals)
+    }
+
     /// The mixed cell at `[x, y, z]`, if it is one.
     pub fn cell(&self, [x, y, z]: [usize; 3]) -> Option<MixedCell> {
         let row = z * CELLS + y;
@@ -100,6 +119,7 @@ pub(crate) struct Worker<'f> {
     pending: Vec<u32>,
     vertices: Vec<Vertex>,
     bold: Vec<Bold>,
+    facets: Vec<Facets>,
     batch: Batch,
     feature: FeatureScratch,
 }
@@ -121,6 +141,7 @@ impl<'f> Worker<'f> {
             pending: Vec::new(),
             vertices: Vec::new(),
             bold: Vec::new(),
+            facets: Vec::new(),
             batch: Batch::default(),
             feature: FeatureScratch::default(),
         }
@@ -171,6 +192,8 @@ impl<'f> Worker<'f> {
         self.sampler.leave();
         surface.vertices = Arc::new(self.vertices.clone());
         surface.bold.clone_from(&self.bold);
+        surface.facets.clone_from(&self.facets);
+        surface.creased = creased;
         Some(surface)
     }
 
@@ -188,7 +211,15 @@ impl<'f> Worker<'f> {
             }
         }
         let cells = self.keys.iter().map(|&key| MixedCell { first_vertex: 0, key }).collect();
-        BrickSurface { rows, before, cells, vertices: Arc::default(), bold: Vec::new() }
+        BrickSurface {
+            rows,
+            before,
+            cells,
+            vertices: Arc::default(),
+            bold: Vec::new(),
+            facets: Vec::new(),
+            creased: false,
+        }
     }
 
     /// Marks cells whose ambivalent face meets that of their neighbour. Neighbours in other bricks cost
@@ -266,9 +297,10 @@ impl<'f> Worker<'f> {
         self.vertices.resize(self.sites.len(), unplaced);
         self.pending.clear();
         self.bold.clear();
-        let Self { sampler, grid, sites, pending, vertices, bold, batch, feature, .. } = self;
+        self.facets.clear();
+        let Self { sampler, grid, sites, pending, vertices, bold, facets, batch, feature, .. } = self;
         if creased {
-            let mut out = Placement { vertices, bold, smooth: pending };
+            let mut out = Placement { vertices, bold, facets, smooth: pending };
             feature.place(&mut **sampler, grid, sites, &mut out, batch);
         } else {
             pending.extend(0..sites.len() as u32);

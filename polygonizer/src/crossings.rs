@@ -8,8 +8,13 @@ use crate::patches::edge_start;
 use crate::place::{Batch, outward};
 use crate::qef::Plane;
 
-/// Rounds of the search along an edge. Two do for most; a kink may take four.
-const ROUNDS: usize = 6;
+/// Rounds of the search along an edge. Two do for most; a kink may take five.
+const ROUNDS: usize = 7;
+
+/// A face that seems to be crossed this close to an end of what is left of the edge (as a share of the edge) is
+/// taken to be: nearer to a box's edge than that, the field there may only tell of the other face, along which
+/// there is no crossing to be found.
+const AT_END: f32 = 0.001;
 
 /// A crossed lattice edge.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +32,7 @@ pub(crate) struct Crossing {
     /// The smooth piece of the field here, see [`Sample::piece`].
     piece: u32,
     wanted: bool,
+    has_tried_end: bool,
 }
 
 impl Crossing {
@@ -40,14 +46,27 @@ impl Crossing {
         let side = usize::from(is_inside(sample.value) != self.start_is_inside);
         self.bracket[side] = self.t;
         self.miss = (ISO - sample.value) / (sample.gradient[usize::from(self.axis)] * spacing);
+        let next = self.t + self.miss;
+        if self.bracket.iter().any(|end| (next - end).abs() <= AT_END) {
+            (self.t, self.miss) = (next, 0.0);
+        }
         self.plane = Plane { point: self.point(spacing), normal: outward(sample) };
         self.piece = sample.piece;
     }
 
+    /// Goes on to where the field seems to lead. If that is away from what is left of the edge, the crossing is on
+    /// another face, which the far end may be on however near the crossing is to it.
     fn advance(&mut self) {
         let [low, high] = self.bracket;
         let next = self.t + self.miss;
-        self.t = if low < next && next < high { next } else { low.midpoint(high) };
+        self.t = if low < next && next < high {
+            next
+        } else if !self.has_tried_end {
+            self.has_tried_end = true;
+            if self.t - low < high - self.t { high } else { low }
+        } else {
+            low.midpoint(high)
+        };
     }
 
     /// Whether the sampled point may be further than `tolerance` edges from the crossing. So it is if the
@@ -104,6 +123,7 @@ impl Crossings {
             plane: Plane { point: Vec3::ZERO, normal: Vec3::ZERO },
             piece: 0,
             wanted: false,
+            has_tried_end: false,
         };
         batch.points.push(crossing.point(grid.brick.spacing));
         self.all.push(crossing);

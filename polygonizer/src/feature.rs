@@ -12,7 +12,7 @@
 use blobtree::{Aabb, Sampler};
 use glam::Vec3;
 
-use crate::brick_surface::Bold;
+use crate::brick_surface::{Bold, Facets};
 use crate::crossings::Crossings;
 use crate::grid::{Grid, Site};
 use crate::guess::{Guess, SAME_FACE, faces_of, turn};
@@ -77,6 +77,8 @@ pub(crate) struct Placement<'a> {
     pub vertices: &'a mut [Vertex],
     /// Places outside the safe boxes, ascending by vertex.
     pub bold: &'a mut Vec<Bold>,
+    /// The faces at candidates, ascending by vertex.
+    pub facets: &'a mut Vec<Facets>,
     /// Sites without features, still to be placed.
     pub smooth: &'a mut Vec<u32>,
 }
@@ -101,6 +103,9 @@ impl FeatureScratch {
         finder.follow_edges();
         for number in 0..finder.scratch.candidates.len() {
             let candidate = finder.scratch.candidates[number];
+            if !candidate.bold {
+                out.facets.push(finder.facets(&candidate));
+            }
             let found = candidate.found.filter(|found| found.off <= ON_SURFACE * spacing);
             match found {
                 Some(found) if !candidate.bold => {
@@ -235,6 +240,11 @@ impl Finder<'_> {
         }
     }
 
+    fn facets(&self, candidate: &Candidate) -> Facets {
+        let faces = faces_of(&self.scratch.planes[candidate.planes[0]..candidate.planes[1]]);
+        Facets { number: candidate.site as u16, normals: faces.into_iter().map(|face| face.normal).collect() }
+    }
+
     pub fn vertex(&self, candidate: &Candidate, found: Guess) -> Vertex {
         let planes = &self.scratch.planes[candidate.planes[0]..candidate.planes[1]];
         Vertex {
@@ -266,7 +276,7 @@ impl Finder<'_> {
                 continue;
             };
             let seen = &planes[candidate.planes[0]..candidate.planes[1]];
-            batch.points.extend(seen.iter().map(|p| found.point.lerp(p.point, CLOSE)));
+            batch.points.extend(seen.iter().map(|p| found.meeting.lerp(p.point, CLOSE)));
             batch.points.push(found.point);
         }
         batch.sample(&mut **sampler);

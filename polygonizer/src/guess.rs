@@ -16,7 +16,10 @@ pub(crate) const SLACK: f32 = 0.006;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Guess {
     pub candidate: usize,
+    /// In the box that it may be in.
     pub point: Vec3,
+    /// Where the planes meet, which may be a slack outside that box.
+    pub meeting: Vec3,
     pub rank: u8,
     /// Direction of the edge, for rank 2.
     pub free: Vec3,
@@ -31,21 +34,21 @@ pub(crate) struct Guess {
 impl Guess {
     /// The meeting if it is a feature inside `allowed`, an edge moved along itself to get there.
     pub fn new(candidate: usize, meeting: Meeting, allowed: &Aabb, turn: f32) -> Option<Self> {
-        let Meeting { mut point, rank, free, .. } = meeting;
+        let Meeting { point: mut meeting, rank, free } = meeting;
         if rank < 2 {
             return None;
         }
         let slack = SLACK * allowed.size().min_element();
-        if point.distance(point.clamp(allowed.min, allowed.max)) <= slack {
-            point = point.clamp(allowed.min, allowed.max);
-        } else {
+        if meeting.distance(meeting.clamp(allowed.min, allowed.max)) > slack {
             if rank == 3 {
                 return None;
             }
-            let [low, high] = clip(point, free, allowed)?;
-            point = (point + free * 0.0_f32.clamp(low, high)).clamp(allowed.min, allowed.max);
+            let [low, high] = clip(meeting, free, allowed)?;
+            meeting += free * 0.0_f32.clamp(low, high);
         }
-        Some(Self { candidate, point, rank, free, turn, off: f32::INFINITY, is_part: false })
+        let point = meeting.clamp(allowed.min, allowed.max);
+        let off = f32::INFINITY;
+        Some(Self { candidate, point, meeting, rank, free, turn, off, is_part: false })
     }
 }
 
@@ -55,8 +58,8 @@ impl Guess {
         let along = (old - self.point).dot(self.free);
         let reach = clip(self.point, self.free, allowed).filter(|_| self.rank == 2);
         if let Some([low, high]) = reach {
-            let point = self.point + self.free * along.clamp(low, high);
-            self.point = point.clamp(allowed.min, allowed.max);
+            self.meeting += self.free * along.clamp(low, high);
+            self.point = self.meeting.clamp(allowed.min, allowed.max);
         }
     }
 }

@@ -58,7 +58,8 @@
 //! 1. one vertex for every patch of every cell that the surface passes (`patches`), on the surface if that is
 //!    smooth there (`place`), else on its sharp edge or corner (`feature`);
 //! 2. features that had to leave their cells' safe boxes (`bold`) are admitted if no triangle suffers (`settle`);
-//! 3. one quadrilateral, cut in two, for every lattice edge that the surface crosses (`stitch`).
+//! 3. one quadrilateral, cut in two, for every lattice edge that the surface crosses (`stitch`);
+//! 4. one vertex more on every line that cuts off a sharp edge (`crease`, `split`).
 //!
 //! A brick's vertices depend on the field in it and one cell around only. So an update remakes the bricks that
 //! an edit touches, and has the very same bytes as a fresh surface.
@@ -66,15 +67,17 @@
 //! # What it does not do
 //!
 //! Parts of the solid that hold no lattice point and gaps that no lattice point lies in are not seen: choose
-//! cells smaller than what matters. Sheets closer than a cell may touch or cross. A cell has one vertex for each
-//! patch: where it would need to mark two different sharp edges, one of them is cut off.
+//! cells smaller than what matters. Sheets closer than a cell may touch or cross. Lines that cut off sharp edges are
+//! split, but not turned: a triangle that joins the three edges of a corner, past that corner, stays.
 
 mod bold;
 mod brick_surface;
 mod cell_size;
+mod crease;
 mod crossings;
 mod error;
 mod feature;
+mod finish;
 mod grid;
 mod guess;
 mod lattice;
@@ -85,6 +88,7 @@ mod progressive;
 mod qef;
 mod ring;
 mod settle;
+mod split;
 mod stitch;
 mod surface;
 mod walk;

@@ -32,6 +32,16 @@ impl VertexRef {
     pub const fn number(self) -> usize {
         (self.0 & 0xffff) as usize
     }
+
+    /// The vertex as seen from the brick itself if this is how the brick with index `brick` sees it.
+    pub const fn seen_from_own(self, brick: usize) -> Self {
+        Self::new(self.brick() + brick - OWN, self.number() as u16)
+    }
+
+    /// The vertex as the brick with index `brick` sees it.
+    pub const fn seen_from(self, brick: usize) -> Self {
+        Self::new(self.brick() + OWN - brick, self.number() as u16)
+    }
 }
 
 /// Steps along the axes in [`Around`].

@@ -14,8 +14,7 @@ use crate::brick_surface::{Bold, BrickSurface, Worker};
 use crate::lattice::{BRICKS_PER_BLOCK, BrickKey, BrickRange, Lattice};
 use crate::place::{Vertex, VertexKind};
 use crate::ring::{Around, OWN, VertexRef};
-use crate::settle::{fitting_alone, settle};
-use crate::stitch::stitch;
+use crate::split::Split;
 use crate::workers::run_tasks;
 use crate::{CellSize, Options, PolygonizeError};
 
@@ -23,10 +22,10 @@ use crate::{CellSize, Options, PolygonizeError};
 const MAX_BLOCKS: u64 = 1 << 20;
 
 /// Bricks that a thread takes at a time: neighbours, so that it seldom changes blocks.
-const GRAIN: usize = 8;
+pub(crate) const GRAIN: usize = 8;
 
 /// Offsets of the bricks that a brick's triangles reach into.
-const PREVIOUS: RangeInclusive<i32> = -1..=0;
+pub(crate) const PREVIOUS: RangeInclusive<i32> = -1..=0;
 
 /// A surface in bricks of 15³ cells, which can follow its field.
 ///
@@ -35,18 +34,26 @@ const PREVIOUS: RangeInclusive<i32> = -1..=0;
 pub struct Surface {
     cell: CellSize,
     /// Those with vertices, in the order of their keys.
-    bricks: Vec<Entry>,
+    pub(crate) bricks: Vec<Entry>,
 }
 
+/// A brick that the surface passes, from phase to phase.
 #[derive(Clone, Debug, PartialEq)]
-struct Entry {
-    key: BrickKey,
-    surface: Arc<BrickSurface>,
+pub(crate) struct Entry {
+    pub key: BrickKey,
+    pub surface: Arc<BrickSurface>,
     /// Those of its bold vertices that may leave their cells if no other does.
-    bold: Arc<Vec<Bold>>,
-    /// Its vertices where they ended up.
-    vertices: Arc<Vec<Vertex>>,
-    triangles: Arc<Vec<[VertexRef; 3]>>,
+    pub bold: Arc<Vec<Bold>>,
+    /// Its cells' vertices where they ended up, and what they are stitched to.
+    pub settled: Arc<Vec<Vertex>>,
+    pub stitched: Arc<Vec<[VertexRef; 3]>>,
+    /// Those of these triangles that may cut off an edge, vertices that may make up for it, and those that do.
+    pub suspects: Arc<Vec<u32>>,
+    pub proposals: Arc<Vec<Split>>,
+    pub splits: Arc<Vec<Split>>,
+    /// All its vertices, those of cells first, and its triangles.
+    pub vertices: Arc<Vec<Vertex>>,
+    pub triangles: Arc<Vec<[VertexRef; 3]>>,
 }
 
 /// What [`Surface::update`] did, as keys of bricks, each list in ascending order.
@@ -82,10 +89,7 @@ impl Surface {
         if let Some(range) = bricks_of(field, cell)? {
             let made = surface.make_bricks(field, range, None, options)?;
             surface.bricks = made.into_iter().map(|(key, brick)| Entry::new(key, brick)).collect();
-            let all: Vec<usize> = (0..surface.bricks.len()).collect();
-            surface.settle_alone(&all);
-            surface.settle_together(&all);
-            surface.stitch_entries(&all);
+            surface.finish_all(field);
         }
         options.report(1.0);
         Ok(surface)
@@ -117,7 +121,7 @@ impl Surface {
             }
             None => Vec::new(),
         };
-        let changes = self.replace(made, |key| lattice.apron(key).overlaps(&dirty));
+        let changes = self.replace(field, made, dirty);
         options.report(1.0);
         Ok(changes)
     }
@@ -199,7 +203,7 @@ impl Surface {
         chunk
     }
 
-    fn lattice(&self) -> Lattice {
+    pub(crate) fn lattice(&self) -> Lattice {
         Lattice { spacing: self.cell.mm() }
     }
 
@@ -246,13 +250,14 @@ impl Surface {
         Ok(made)
     }
 
-    /// Puts `made` in the place of all bricks that are `stale`, then phase two where it matters.
-    fn replace(&mut self, made: Vec<(BrickKey, BrickSurface)>, stale: impl Fn(BrickKey) -> bool) -> Changes {
+    /// Puts `made` in the place of all bricks that `dirty` can touch, then the other phases where it matters.
+    fn replace(&mut self, field: &dyn Field, made: Vec<(BrickKey, BrickSurface)>, dirty: Aabb) -> Changes {
+        let lattice = self.lattice();
         let mut made: BTreeMap<_, _> = made.into_iter().collect();
         let mut changes = Changes::default();
         let mut touched = Vec::new();
         self.bricks.retain_mut(|entry| {
-            if !stale(entry.key) {
+            if !lattice.apron(entry.key).overlaps(&dirty) {
                 return true;
             }
             match made.remove(&entry.key) {
@@ -272,98 +277,16 @@ impl Surface {
         self.bricks.extend(made.into_iter().map(|(key, brick)| Entry::new(key, brick)));
         self.bricks.sort_unstable_by_key(|entry| entry.key);
         touched.extend(&changes.removed);
-        changes.changed = self.finish_around(&touched);
+        changes.changed = self.finish_around(field, &touched, dirty);
         changes
     }
 
-    /// Phases two and three after a change of phase one in the bricks with these keys. Returns the keys of all
-    /// that are different now.
-    fn finish_around(&mut self, touched: &[BrickKey]) -> Vec<BrickKey> {
-        let stitched = self.entries_near(touched, -2..=3);
-        let before: Vec<Entry> = stitched.iter().map(|&i| self.bricks[i].clone()).collect();
-        self.settle_alone(&self.entries_near(touched, -1..=1));
-        self.settle_together(&self.entries_near(touched, -2..=2));
-        self.stitch_entries(&stitched);
-        let differs = |(i, old): &(&usize, &Entry)| {
-            let new = &self.bricks[**i];
-            touched.contains(&new.key) || new.vertices != old.vertices || new.triangles != old.triangles
-        };
-        let different: Vec<BrickKey> =
-            stitched.iter().zip(&before).filter(differs).map(|(_, old)| old.key).collect();
-        // A chunk also holds vertices of the bricks before it.
-        self.entries_near(&different, 0..=1).into_iter().map(|i| self.bricks[i].key).collect()
-    }
-
-    /// The entries whose keys are any of `keys` plus an offset in `offsets` along each axis, ascending.
-    fn entries_near(&self, keys: &[BrickKey], offsets: RangeInclusive<i32>) -> Vec<usize> {
-        let near = keys.iter().flat_map(|&[x, y, z]| {
-            let offsets = offsets.clone();
-            offsets.clone().flat_map(move |dx| {
-                let offsets = offsets.clone();
-                offsets.clone().flat_map(move |dy| offsets.clone().map(move |dz| [x + dx, y + dy, z + dz]))
-            })
-        });
-        let mut keys: Vec<BrickKey> = near.collect();
-        keys.sort_unstable();
-        keys.dedup();
-        keys.into_iter().filter_map(|key| self.find(key)).collect()
-    }
-
-    /// The first half of phase two for the entries with these indices: bold vertices on their own.
-    fn settle_alone(&mut self, indices: &[usize]) {
-        let alone = self.for_entries(indices, |surface, entry| {
-            if entry.surface.bold.is_empty() {
-                return Arc::default();
-            }
-            let around = surface.indices_around(entry.key, -1..=1);
-            let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
-            Arc::new(fitting_alone(&surfaces, surface.cell.mm()))
-        });
-        for (&i, bold) in indices.iter().zip(alone) {
-            self.bricks[i].bold = bold;
-        }
-    }
-
-    /// The second half of phase two: bold vertices among others.
-    fn settle_together(&mut self, indices: &[usize]) {
-        let settled = self.for_entries(indices, |surface, entry| {
-            if entry.bold.is_empty() {
-                return Arc::clone(&entry.surface.vertices);
-            }
-            let around = surface.indices_around(entry.key, -1..=1);
-            let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
-            let bold = around.map(|n| n.map(|n| &surface.bricks[n].bold[..]));
-            Arc::new(settle(&surfaces, &bold, surface.cell.mm()))
-        });
-        for (&i, vertices) in indices.iter().zip(settled) {
-            self.bricks[i].vertices = vertices;
-        }
-    }
-
-    /// Phase three for the entries with these indices.
-    fn stitch_entries(&mut self, indices: &[usize]) {
-        let stitched = self.for_entries(indices, |surface, entry| {
-            let around = surface.indices_around(entry.key, PREVIOUS);
-            let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
-            let vertices = around.map(|n| n.map(|n| &surface.bricks[n].vertices[..]));
-            Arc::new(stitch(&surfaces, &vertices, surface.cell.mm()))
-        });
-        for (&i, triangles) in indices.iter().zip(stitched) {
-            self.bricks[i].triangles = triangles;
-        }
-    }
-
-    /// What `work` makes of each of these entries, in parallel.
-    fn for_entries<T: Send>(&self, indices: &[usize], work: impl Fn(&Self, &Entry) -> T + Sync) -> Vec<T> {
-        indices.par_iter().with_min_len(8).map(|&i| work(self, &self.bricks[i])).collect()
-    }
-
-    fn find(&self, key: BrickKey) -> Option<usize> {
+    pub(crate) fn find(&self, key: BrickKey) -> Option<usize> {
         self.bricks.binary_search_by_key(&key, |b| b.key).ok()
     }
 
     /// Where the bricks around `key` are that are `offsets` from it along each axis.
-    fn indices_around(&self, key: BrickKey, offsets: RangeInclusive<i32>) -> Around<usize> {
+    pub(crate) fn indices_around(&self, key: BrickKey, offsets: RangeInclusive<i32>) -> Around<usize> {
         let mut around = [None; 27];
         for dx in offsets.clone() {
             for dy in offsets.clone() {
@@ -384,13 +307,18 @@ impl Surface {
 }
 
 impl Entry {
-    fn new(key: BrickKey, surface: BrickSurface) -> Self {
+    pub fn new(key: BrickKey, surface: BrickSurface) -> Self {
         Self {
             key,
-            vertices: Arc::clone(&surface.vertices),
             bold: Arc::default(),
-            surface: Arc::new(surface),
+            settled: Arc::clone(&surface.vertices),
+            stitched: Arc::default(),
+            suspects: Arc::default(),
+            proposals: Arc::default(),
+            splits: Arc::default(),
+            vertices: Arc::clone(&surface.vertices),
             triangles: Arc::default(),
+            surface: Arc::new(surface),
         }
     }
 }

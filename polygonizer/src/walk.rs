@@ -92,8 +92,9 @@ impl Finder<'_> {
             let candidate = &self.scratch.candidates[walk.candidate];
             let reached = point.map(|p| (p, candidate.clamp(p)));
             let slack = SLACK * self.spacing;
-            if let Some((_, point)) = reached.filter(|(p, reached)| p.distance(*reached) <= slack) {
-                self.scratch.guesses.push(Guess { candidate: walk.candidate, point, rank: 3, ..walk.found });
+            if let Some((meeting, point)) = reached.filter(|(p, reached)| p.distance(*reached) <= slack) {
+                let guess = Guess { candidate: walk.candidate, point, meeting, rank: 3, ..walk.found };
+                self.scratch.guesses.push(guess);
             }
         }
         self.measure_guesses();

@@ -5,4 +5,5 @@ pub mod convert;
 pub mod eval;
 pub mod mesh;
 pub mod render;
+pub mod sketch;
 pub mod tree;

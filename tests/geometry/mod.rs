@@ -4,7 +4,7 @@
 
 pub mod volume;
 
-use blobtree::{Aabb, Field, NoMeshes, Node, Scene, Tree};
+use blobtree::{Aabb, Field, NoSources, Node, Scene, Tree};
 use fastrand::Rng;
 use glam::Vec3;
 use mesh::{Fault, Mesh, SelfIntersections, Validity};
@@ -25,7 +25,7 @@ pub fn ordinary_or_full<T>(ordinary: T, full: T) -> T {
 pub fn example(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name).with_extension("trullo");
     let bytes = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    Scene::from_bytes(&bytes, &mut NoMeshes).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    Scene::from_bytes(&bytes, &mut NoSources).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
 /// The names of all example scenes, sorted.

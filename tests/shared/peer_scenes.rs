@@ -1,7 +1,7 @@
 //! The benchmark scenes give the values that the peers' neutral scenes define.
 
 use crate::shared;
-use blobtree::{Field, NoMeshes, Scene, Tree};
+use blobtree::{Field, NoSources, Scene, Tree};
 use fastrand::Rng;
 use glam::{Mat3, Vec3};
 use serde_json::Value;
@@ -69,7 +69,7 @@ fn the_benchmark_scenes_equal_the_peers_to_one_in_a_hundred_thousand() {
         let neutral: Value = serde_json::from_str(&text).expect("JSON");
         let path = format!("{}/benches/scenes/{name}.trullo", env!("CARGO_MANIFEST_DIR"));
         let bytes = std::fs::read(path).expect("in the repository");
-        let scene = Scene::from_bytes(&bytes, &mut NoMeshes).expect("a legal scene");
+        let scene = Scene::from_bytes(&bytes, &mut NoSources).expect("a legal scene");
         let tree = Tree::new(&scene.root);
         let mut rng = Rng::with_seed(1);
         let points: Vec<Vec3> =

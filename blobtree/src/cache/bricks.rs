@@ -1,56 +1,42 @@
 //! One node's cache: bricks of samples in the node's own space.
 
-use crate::eval::Tree;
-use crate::field::{Aabb, Brick, Field};
+use super::certificate::{self, Cells};
+use super::interpolation::{BRICK_CELLS, CELLS, SAMPLES, SIDE, Samples};
+use super::pages::{Budget, Found, Pages};
+use crate::eval::{Crease, Tree, TreeSampler};
+use crate::field::{Aabb, Brick, Field, Sample, Sampler};
 use crate::leaf::Frame;
-use crate::scalar::{Scalar, Slope, Triple};
 use glam::Vec3;
-use std::collections::HashMap;
-use std::sync::{Arc, OnceLock, RwLock};
+use std::sync::Arc;
 
-/// Cells along each side of a brick: few, so that a lone question fills little.
-const CELLS: i32 = 4;
+/// Lattices of a cache, each twice as fine as the one before: most of a field is smooth enough for the first.
+pub(super) const LEVELS: usize = 2;
 
-/// Samples along each side of a brick; neighbours share a layer.
-const SIDE: usize = CELLS as usize + 1;
-
-/// Samples of a brick, x fastest.
-type Samples = [f32; SIDE * SIDE * SIDE];
-
-/// Largest estimated error of a brick's interpolation. The estimate misses what happens between samples;
-/// the field is promised to stay within 0.01.
-const TOLERANCE: f32 = 0.004;
-
-/// Interpolated places are all on one piece.
-const CACHED_PIECE: u32 = 0x5eed_cace;
-
-/// Most bricks that one cache keeps: some 200 MiB. Where there are more, evaluation is exact.
-const MOST_BRICKS: usize = 1 << 18;
+/// Cells along each side of a brick, as lattice indices count.
+const STEP: i32 = CELLS as i32;
 
 /// A node's samples, filled lazily by whichever thread asks first; the values do not depend on which.
 #[derive(Debug)]
 pub(crate) struct NodeCache {
     /// The node's subtree, in its own space and without caches.
     pub exact: Tree,
-    /// Distance of neighbouring samples, mm. The lattice is anchored at the origin, not at the node's box, so
-    /// that edits do not shift it.
+    /// Distance of neighbouring samples at the finest level, mm; twice that at the next, and so on. The lattices
+    /// are anchored at the origin, not at the node's box, so that edits do not shift them.
     pub spacing: f32,
-    bricks: RwLock<HashMap<[i32; 3], Slot>>,
+    /// From coarse to fine: what a level cannot tell is asked of the next.
+    levels: [Pages; LEVELS],
 }
 
-/// What a cache knows of a brick.
+/// What a cache knows of a brick: depends on the brick's place alone.
 #[derive(Debug)]
 pub(crate) enum CacheBrick {
     /// The field is 0.
     Empty,
-    /// Interpolation is accurate.
-    Smooth(Box<Samples>),
-    /// It is not.
+    /// Interpolation is nowhere accurate.
     Exact,
+    /// It is in these cells.
+    Samples { certified: Cells, samples: Box<Samples> },
 }
-
-/// A brick that is filled or will be.
-type Slot = Arc<OnceLock<CacheBrick>>;
 
 /// A cache at its place in a tree.
 #[derive(Debug)]
@@ -58,11 +44,19 @@ pub(crate) struct CacheSite {
     pub cache: Arc<NodeCache>,
     /// From the space of evaluation to the node's own.
     pub frame: Frame,
+    /// Tells the caches of a tree apart.
+    pub number: u32,
 }
 
 impl NodeCache {
-    pub fn new(exact: Tree, spacing: f32) -> Self {
-        Self { exact, spacing, bricks: RwLock::default() }
+    pub fn new(exact: Tree, spacing: f32, budget: Arc<Budget>) -> Self {
+        let support = exact.support();
+        let levels = std::array::from_fn(|level| {
+            let spacing = level_spacing(spacing, level);
+            let brick_of = |p: Vec3| Self::brick_of(Self::cell_of((p / spacing).to_array()));
+            Pages::new(brick_of(support.min), brick_of(support.max), budget.clone())
+        });
+        Self { exact, spacing, levels }
     }
 
     /// Takes over what `older` knows of bricks that do not touch `changed`, in the node's space.
@@ -70,110 +64,94 @@ impl NodeCache {
         if older.spacing != self.spacing {
             return;
         }
-        let known = older.bricks.read().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let kept = known.iter().filter(|(key, _)| !region(**key, self.spacing).overlaps(changed));
-        self.bricks = RwLock::new(kept.map(|(key, brick)| (*key, brick.clone())).collect());
+        for (level, (own, older)) in self.levels.iter_mut().zip(&older.levels).enumerate() {
+            let spacing = level_spacing(self.spacing, level);
+            own.inherit(older, |low, high| region(low, high, spacing).overlaps(changed));
+        }
     }
 
-    /// The brick with this key, filled if it was not; `None` where the cache is full.
-    fn brick(&self, key: [i32; 3]) -> Option<Slot> {
-        let known = self.bricks.read().unwrap_or_else(std::sync::PoisonError::into_inner).get(&key).cloned();
-        let slot = match known {
-            Some(slot) => slot,
-            None => {
-                let mut bricks = self.bricks.write().unwrap_or_else(std::sync::PoisonError::into_inner);
-                if bricks.len() >= MOST_BRICKS && !bricks.contains_key(&key) {
-                    return None;
-                }
-                bricks.entry(key).or_default().clone()
-            }
+    /// The lattice cell of a place in units of the spacing.
+    pub fn cell_of(place: [f32; 3]) -> [i32; 3] {
+        place.map(|x| x.floor() as i32)
+    }
+
+    /// The brick of a cell.
+    pub fn brick_of(cell: [i32; 3]) -> [i32; 3] {
+        cell.map(|c| c.div_euclid(STEP))
+    }
+
+    /// The cell's place in its brick.
+    pub fn place_in_brick(cell: [i32; 3]) -> [usize; 3] {
+        cell.map(|c| c.rem_euclid(STEP) as usize)
+    }
+
+    /// Distance of neighbouring samples at a level, mm.
+    #[inline(always)]
+    pub fn level_spacing(&self, level: usize) -> f32 {
+        level_spacing(self.spacing, level)
+    }
+
+    /// The brick with this key at this level; `fill` makes it where it is not known.
+    pub fn brick(&self, level: usize, key: [i32; 3], fill: impl FnOnce() -> CacheBrick) -> Found<'_> {
+        self.levels[level].brick(key, fill)
+    }
+
+    /// What belongs in the brick with this key at this level, by a sampler of [`Self::exact`].
+    pub fn fill(&self, level: usize, key: [i32; 3], sampler: &mut TreeSampler) -> CacheBrick {
+        let spacing = self.level_spacing(level);
+        let bound = sampler.enter(region(key, key, spacing));
+        let content = if bound.hi <= 0.0 {
+            CacheBrick::Empty
+        } else if sampler.crease() == Crease::Sharp {
+            CacheBrick::Exact
+        } else {
+            sampled(key, spacing, sampler)
         };
-        slot.get_or_init(|| self.fill(key));
-        Some(slot)
-    }
-
-    fn fill(&self, key: [i32; 3]) -> CacheBrick {
-        let mut sampler = self.exact.sampler();
-        let bound = sampler.enter(region(key, self.spacing));
-        if bound.hi <= 0.0 {
-            return CacheBrick::Empty;
-        }
-        if sampler.creased() {
-            return CacheBrick::Exact;
-        }
-        let points: [Vec3; SIDE * SIDE * SIDE] = std::array::from_fn(|at| {
-            let at = [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE];
-            Brick::lattice_point(std::array::from_fn(|a| key[a] * CELLS + at[a] as i32), self.spacing)
-        });
-        let mut values = Box::new([0.0; SIDE * SIDE * SIDE]);
-        sampler.values(&points, &mut *values);
-        if interpolation_error(&values) <= TOLERANCE { CacheBrick::Smooth(values) } else { CacheBrick::Exact }
+        sampler.leave();
+        content
     }
 }
 
-/// The box of the brick with this key.
-fn region(key: [i32; 3], spacing: f32) -> Aabb {
-    let corner = |add: i32| Brick::lattice_point(key.map(|k| (k + add) * CELLS), spacing);
-    Aabb { min: corner(0), max: corner(1) }
-}
-
-/// Estimate of the largest error of trilinear interpolation, from second differences: `⅛ Σ |∂²f| h²`.
-fn interpolation_error(values: &Samples) -> f32 {
-    let along = |stride: usize| {
-        let mut largest = 0.0f32;
-        for at in 0..values.len() - 2 * stride {
-            if at / stride % SIDE < SIDE - 2 {
-                let bend = values[at] - 2.0 * values[at + stride] + values[at + 2 * stride];
-                largest = largest.max(bend.abs());
-            }
-        }
-        largest
-    };
-    (along(1) + along(SIDE) + along(SIDE * SIDE)) / 8.0
-}
-
-/// One thread's way into a cache: remembers the brick it looked at last.
-#[derive(Debug, Default)]
-pub(crate) struct CacheReader {
-    last: Option<([i32; 3], Option<Slot>)>,
-}
-
-impl CacheReader {
-    /// The interpolated field at `p`, in the space of evaluation; `None` where it must be evaluated exactly.
-    pub fn read<S: Scalar>(&mut self, site: &CacheSite, p: Triple<S>) -> Option<Slope<S>> {
-        let cache = &site.cache;
-        let q = site.frame.apply(p).map(|x| x * S::of(1.0 / cache.spacing));
-        let cell = q.map(|x| x.value().floor() as i32);
-        let key = cell.map(|c| c.div_euclid(CELLS));
-        if self.last.as_ref().is_none_or(|(last, _)| *last != key) {
-            self.last = Some((key, cache.brick(key)));
-        }
-        let (_, slot) = self.last.as_ref()?;
-        match slot.as_ref()?.get()? {
-            CacheBrick::Empty => Some(Slope::constant(0.0)),
-            CacheBrick::Exact => None,
-            CacheBrick::Smooth(values) => {
-                let at = |a: usize| (cell[a] - key[a] * CELLS) as usize;
-                let corner = at(0) + SIDE * (at(1) + SIDE * at(2));
-                let t = std::array::from_fn(|a| q[a] - S::of(cell[a] as f32));
-                let slope = trilinear(values, corner, t);
-                let gradient = slope.gradient.map(|g| g * S::of(1.0 / cache.spacing));
-                Some(Slope::new(slope.value, site.frame.pull_back(gradient)).on(CACHED_PIECE))
-            }
-        }
+/// The box of all samples of the bricks with keys from `low` to `high`.
+fn region(low: [i32; 3], high: [i32; 3], spacing: f32) -> Aabb {
+    Aabb {
+        min: Brick::lattice_point(low.map(|k| k * STEP - 1), spacing),
+        max: Brick::lattice_point(high.map(|k| (k + 1) * STEP + 1), spacing),
     }
 }
 
-/// Trilinear interpolation in the cell whose lowest sample is `corner`, and its derivative by `t`.
-fn trilinear<S: Scalar>(values: &Samples, corner: usize, t: Triple<S>) -> Slope<S> {
-    let sample = |x: usize, y: usize, z: usize| S::of(values[corner + x + SIDE * (y + SIDE * z)]);
-    let mix = |a: S, b: S, t: S| a + (b - a) * t;
-    let edge =
-        |y: usize, z: usize| (mix(sample(0, y, z), sample(1, y, z), t[0]), sample(1, y, z) - sample(0, y, z));
-    let side = |z: usize| {
-        let ((low, low_x), (high, high_x)) = (edge(0, z), edge(1, z));
-        (mix(low, high, t[1]), mix(low_x, high_x, t[1]), high - low)
-    };
-    let ((low, low_x, low_y), (high, high_x, high_y)) = (side(0), side(1));
-    Slope::new(mix(low, high, t[2]), [mix(low_x, high_x, t[2]), mix(low_y, high_y, t[2]), high - low])
+/// Samples of the brick with this key, and where they may stand in for the field.
+fn sampled(key: [i32; 3], spacing: f32, sampler: &mut TreeSampler) -> CacheBrick {
+    let points: [Vec3; SAMPLES] = std::array::from_fn(|at| {
+        let at = [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE];
+        Brick::lattice_point(std::array::from_fn(|a| key[a] * STEP + at[a] as i32 - 1), spacing)
+    });
+    let mut samples = Box::new([0.0; SAMPLES]);
+    let mut even = Cells::ALL;
+    if sampler.crease() == Crease::Faceted {
+        let mut slopes = vec![Sample::default(); SAMPLES];
+        sampler.samples(&points, &mut slopes);
+        samples.iter_mut().zip(&slopes).for_each(|(value, slope)| *value = slope.value);
+        even = certificate::even_cells(&slopes, spacing);
+    } else {
+        sampler.values(&points, &mut *samples);
+    }
+    let tolerances = certificate::tolerances(&samples, sampler.crease());
+    let hopeful = even.and(certificate::hopeful_cells(&samples, &tolerances));
+    if hopeful.is_empty() {
+        return CacheBrick::Exact;
+    }
+    let middles: [Vec3; BRICK_CELLS] = std::array::from_fn(|cell| {
+        let cell = [cell % CELLS, cell / CELLS % CELLS, cell / CELLS / CELLS];
+        let low = cell[0] + SIDE * (cell[1] + SIDE * cell[2]) + 1 + SIDE + SIDE * SIDE;
+        points[low].midpoint(points[low + 1 + SIDE + SIDE * SIDE])
+    });
+    let mut values = [0.0; BRICK_CELLS];
+    sampler.values(&middles, &mut values);
+    let certified = hopeful.and(certificate::accurate_cells(&samples, &values, &tolerances));
+    if certified.is_empty() { CacheBrick::Exact } else { CacheBrick::Samples { certified, samples } }
+}
+
+fn level_spacing(finest: f32, level: usize) -> f32 {
+    finest * (1 << (LEVELS - 1 - level)) as f32
 }

@@ -4,6 +4,7 @@
 //! regions (`specialise`), runs it for values over bricks or clouds of points (`values`), for values with
 //! gradients (`slopes`), and one point at a time with any kind of number (`point`).
 
+mod cached;
 mod loops;
 mod places;
 mod point;
@@ -13,6 +14,9 @@ mod scratch;
 mod slopes;
 mod specialise;
 mod values;
+mod warped;
 
 pub use program::{Tree, support};
 pub(crate) use program::{warp_map, warped_region};
+pub(crate) use sampler::TreeSampler;
+pub(crate) use specialise::Crease;

@@ -24,7 +24,7 @@ impl TreeSampler<'_> {
                 let piece = warped.piece_of(&inner);
                 Slope::new(inner.value, warped.pull_back(inner.gradient)).on(piece)
             }
-            Op::Cache(i) => match self.readers[i as usize].read(&self.tree.caches[i as usize], p) {
+            Op::Cache { number, creased } => match self.readers[number as usize].read(p, creased) {
                 Some(slope) => slope,
                 None => self.run_point(self.narrower.arena[first], p),
             },

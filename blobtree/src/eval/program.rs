@@ -45,8 +45,11 @@ pub(crate) enum Op {
     GradientBlend(u32),
     /// The warp of this number.
     Warp(u32),
-    /// The cache of this number, before its exact operand.
-    Cache(u32),
+    /// The cache of this number, before its exact operand, which may be creased in the region at hand.
+    Cache {
+        number: u32,
+        creased: bool,
+    },
 }
 
 impl Instr {
@@ -123,9 +126,9 @@ impl Tree {
         let exact = self.compile_shape(node, node_from_world, find);
         match find(node) {
             Some(cache) if exact.op != Op::Empty => {
-                let site = CacheSite { cache, frame: Frame::new(*node_from_world) };
-                self.caches.push(site);
-                self.push(Op::Cache(self.caches.len() as u32 - 1), [exact])
+                let number = self.caches.len() as u32;
+                self.caches.push(CacheSite { cache, frame: Frame::new(*node_from_world), number });
+                self.push(Op::Cache { number, creased: true }, [exact])
             }
             _ => exact,
         }

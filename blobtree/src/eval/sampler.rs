@@ -4,7 +4,7 @@ use super::places::{Axes, Cloud, ROW};
 use super::program::{Instr, Tree};
 use super::scratch::Scratch;
 use super::slopes::Want;
-use super::specialise::{Narrowed, Narrower};
+use super::specialise::{Crease, Narrowed, Narrower};
 use crate::cache::CacheReader;
 use crate::field::{Aabb, BRICK_SAMPLES, Brick, Interval, Sample, Sampler};
 use crate::leaf::PurePoint;
@@ -28,7 +28,7 @@ pub(crate) struct TreeSampler<'a> {
     /// The same for sums with gradients.
     pub numbered_points: Vec<(u32, PurePoint)>,
     /// A way into each of the tree's caches.
-    pub readers: Vec<CacheReader>,
+    pub readers: Vec<CacheReader<'a>>,
     pub arch: pulp::Arch,
     /// Evaluations of a primitive at a point so far.
     pub evaluations: u64,
@@ -52,7 +52,7 @@ impl<'a> TreeSampler<'a> {
             tables: Vec::new(),
             points: Vec::new(),
             numbered_points: Vec::new(),
-            readers: tree.caches.iter().map(|_| CacheReader::default()).collect(),
+            readers: tree.caches.iter().map(CacheReader::new).collect(),
             arch: pulp::Arch::new(),
             evaluations: 0,
         }
@@ -61,6 +61,11 @@ impl<'a> TreeSampler<'a> {
     /// The program of the region entered last.
     fn current(&self) -> Instr {
         self.levels.last().map_or(self.tree.root, |level| level.narrowed.instr)
+    }
+
+    /// Whether the gradient may jump somewhere in the current region.
+    pub fn crease(&self) -> Crease {
+        self.levels.last().map_or(Crease::Sharp, |level| level.narrowed.crease)
     }
 
     /// A cloud of at most [`CHUNK`] points, its last row filled up with the last of them.
@@ -96,7 +101,7 @@ impl Sampler for TreeSampler<'_> {
     }
 
     fn creased(&self) -> bool {
-        self.levels.last().is_none_or(|level| level.narrowed.creased)
+        self.crease() > Crease::None
     }
 
     fn fill(&mut self, brick: &Brick, values: &mut [f32; BRICK_SAMPLES]) {

@@ -38,7 +38,9 @@ impl TreeSampler<'_> {
                 with_kernel!(leaf, kernel => arch.dispatch(KernelSlopes { kernel, number: i, places, out }));
             }
             Op::Warp(i) => self.warped_slopes(i, first, places, out, want),
-            Op::Cache(i) => self.cached_slopes(i, first, places, out, want),
+            Op::Cache { number, creased } => {
+                self.cached_slopes(number, creased, first, places, out, want);
+            }
             Op::Sum => self.sum_slopes(instr, places, out, want),
             Op::Union => self.fold_slopes(instr, places, out, want, combine::union),
             Op::Intersection => self.fold_slopes(instr, places, out, want, combine::intersection),
@@ -81,15 +83,9 @@ impl TreeSampler<'_> {
         out: &mut Slopes,
         want: Want,
     ) {
-        let warp = &self.tree.warps[warp as usize];
-        let mut cloud = self.scratch.take_cloud(places.rows());
-        for r in 0..places.rows() {
-            let row = places.row(r);
-            for i in 0..ROW {
-                cloud.set(r, i, warp.child_from_parent(row.place(i)).place);
-            }
-        }
+        let cloud = self.warped_cloud(warp, places);
         self.run_slopes(self.narrower.arena[inner], &cloud, out, want);
+        let warp = &self.tree.warps[warp as usize];
         for r in 0..places.rows() {
             let row = places.row(r);
             for i in 0..ROW {
@@ -123,42 +119,6 @@ impl TreeSampler<'_> {
         for at in operands.skip(points) {
             self.joined_slopes(at, places, out, want, combine::add);
         }
-    }
-
-    /// Interpolates where the cache is accurate, and evaluates the exact operand at all other places.
-    pub(crate) fn cached_slopes<P: Places>(
-        &mut self,
-        cache: u32,
-        exact: usize,
-        places: &P,
-        out: &mut Slopes,
-        want: Want,
-    ) {
-        let site = &self.tree.caches[cache as usize];
-        let mut missing = Vec::new();
-        for at in 0..places.rows() * ROW {
-            let p = places.row(at / ROW).place(at % ROW);
-            match self.readers[cache as usize].read(site, p) {
-                Some(slope) => out.set(at / ROW, at % ROW, slope),
-                None => missing.push(at),
-            }
-        }
-        if missing.is_empty() {
-            return;
-        }
-        let rows = missing.len().div_ceil(ROW);
-        let mut cloud = self.scratch.take_cloud(rows);
-        for to in 0..rows * ROW {
-            let at = missing[to.min(missing.len() - 1)];
-            cloud.set(to / ROW, to % ROW, places.row(at / ROW).place(at % ROW));
-        }
-        let mut slopes = self.scratch.take_slopes(rows);
-        self.run_slopes(self.narrower.arena[exact], &cloud, &mut slopes, want);
-        for (from, at) in missing.iter().enumerate() {
-            out.set(at / ROW, at % ROW, slopes.get(from / ROW, from % ROW));
-        }
-        self.scratch.give_slopes(slopes);
-        self.scratch.give_cloud(cloud);
     }
 
     /// A gradient blend's exact gradient, from jets: it depends on how the children's gradients change.

@@ -11,12 +11,22 @@ const CACHE_ERROR: f32 = 0.01;
 pub(crate) struct Narrowed {
     pub instr: Instr,
     pub bound: Interval,
-    /// Whether the gradient may jump.
-    pub creased: bool,
+    pub crease: Crease,
+}
+
+/// Whether the gradient may jump in a region; the worse comes later.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Crease {
+    /// It does not.
+    None,
+    /// Only between the facets of meshes: samples tell where that matters.
+    Faceted,
+    /// It may, anywhere.
+    Sharp,
 }
 
 impl Narrowed {
-    const EMPTY: Self = Self { instr: Instr::EMPTY, bound: Interval::ZERO, creased: false };
+    const EMPTY: Self = Self { instr: Instr::EMPTY, bound: Interval::ZERO, crease: Crease::None };
 
     fn is_empty(&self) -> bool {
         self.instr.op == Op::Empty
@@ -51,7 +61,7 @@ impl Narrower {
                 if bound.hi <= 0.0 {
                     return Narrowed::EMPTY;
                 }
-                Narrowed { instr, bound, creased: leaf.creased(region) }
+                Narrowed { instr, bound, crease: leaf.crease(region) }
             }
             Op::Warp(i) if !tree.warp_supports[i as usize].overlaps(region) => Narrowed::EMPTY,
             Op::Warp(i) => {
@@ -62,19 +72,19 @@ impl Narrower {
                 }
                 let first = self.arena.len() as u32;
                 self.arena.push(inner.instr);
-                let creased = inner.creased || warp.creased(region);
-                Narrowed { instr: Instr { first, ..instr }, bound: inner.bound, creased }
+                let crease = if warp.creased(region) { Crease::Sharp } else { inner.crease };
+                Narrowed { instr: Instr { first, ..instr }, bound: inner.bound, crease }
             }
-            Op::Cache(_) => {
+            Op::Cache { number, .. } => {
                 let exact = self.narrow(tree, self.arena[instr.first as usize], region);
-                // Where the gradient may jump, interpolation would smooth it.
-                if exact.is_empty() || exact.creased {
+                if exact.is_empty() {
                     return exact;
                 }
                 let first = self.arena.len() as u32;
                 self.arena.push(exact.instr);
+                let op = Op::Cache { number, creased: exact.crease > Crease::None };
                 let bound = exact.bound.widened(CACHE_ERROR);
-                Narrowed { instr: Instr { first, ..instr }, bound, creased: false }
+                Narrowed { instr: Instr { op, first, count: 1 }, bound, crease: exact.crease }
             }
             _ => {
                 let base = self.pending.len();
@@ -142,7 +152,9 @@ impl Narrower {
                 retain_from(operands, base, |o| !o.is_empty());
                 (fold(&operands[base..], Interval::gradient_blend), false)
             }
-            Op::Empty | Op::Leaf(_) | Op::Warp(_) | Op::Cache(_) => unreachable!("not an operation on many"),
+            Op::Empty | Op::Leaf(_) | Op::Warp(_) | Op::Cache { .. } => {
+                unreachable!("not an operation on many")
+            }
         };
         match self.pending[base..] {
             [] => Narrowed::EMPTY,
@@ -150,10 +162,11 @@ impl Narrower {
             _ if bound.hi <= 0.0 => Narrowed::EMPTY,
             ref operands => {
                 let start = self.arena.len() as u32;
-                let creased = creases || operands.iter().any(|o| o.creased);
+                let worst = operands.iter().fold(Crease::None, |worst, o| worst.max(o.crease));
+                let crease = if creases { Crease::Sharp } else { worst };
                 self.arena.extend(operands.iter().map(|o| o.instr));
                 let instr = Instr { op, first: start, count: operands.len() as u32 };
-                Narrowed { instr, bound, creased }
+                Narrowed { instr, bound, crease }
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Programs run for values, over bricks or clouds.
 
 use super::loops::{Each, KernelValues, SumTables, Zip};
-use super::places::{Axes, Cloud, Places, ROW, Row};
+use super::places::{Axes, Cloud, Places, ROW};
 use super::program::{Instr, Op};
 use super::sampler::TreeSampler;
 use super::slopes::Want;
@@ -46,22 +46,12 @@ impl TreeSampler<'_> {
             Op::Empty => out.fill([0.0; ROW]),
             Op::Leaf(i) => self.leaf_values(i, places, out),
             Op::Warp(i) => {
-                let warp = &self.tree.warps[i as usize];
-                let mut cloud = self.scratch.take_cloud(places.rows());
-                for r in 0..places.rows() {
-                    let row = places.row(r);
-                    for i in 0..ROW {
-                        cloud.set(r, i, warp.child_from_parent(row.place(i)).place);
-                    }
-                }
+                let cloud = self.warped_cloud(i, places);
                 self.run_values(self.narrower.arena[instr.first as usize], &cloud, out);
                 self.scratch.give_cloud(cloud);
             }
-            Op::Cache(i) => {
-                let mut slopes = self.scratch.take_slopes(places.rows());
-                self.cached_slopes(i, instr.first as usize, places, &mut slopes, Want::Direction);
-                out.copy_from_slice(&slopes.value);
-                self.scratch.give_slopes(slopes);
+            Op::Cache { number, creased } => {
+                self.cached_values(number, creased, instr.first as usize, places, out);
             }
             Op::Sum => self.sum_values(instr, places, out),
             Op::Union => self.fold_values(instr, places, out, |f, g| larger(g, f)),

@@ -60,4 +60,8 @@ impl Kernel for Import {
     fn creased(&self, _region: &Aabb) -> bool {
         true
     }
+
+    fn is_faceted(&self) -> bool {
+        true
+    }
 }

@@ -1,22 +1,35 @@
 //! Primitives compiled for evaluation: each a formula for value and gradient, bounds, and its place.
 
 mod chain;
+mod extrusion;
 mod frame;
 mod import;
+mod inflated;
+mod pipe;
 pub(crate) mod polygon;
+mod reach;
+mod revolved;
+mod section;
 mod skeleton;
+mod sketched;
 mod solid;
 
+use crate::eval::Crease;
 use crate::falloff::Falloff;
 use crate::field::{Aabb, Interval};
-use crate::primitive::{PolylinePoint, Primitive};
+use crate::primitive::Primitive;
 use crate::scalar::{Scalar, Slope, Triple};
 use chain::Chain;
+use extrusion::Extrusion;
 pub(crate) use frame::Frame;
 use frame::upright;
 use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3};
 use import::Import;
+use inflated::Inflated;
+use pipe::Pipe;
 use polygon::Outline;
+pub(crate) use reach::support;
+use revolved::Revolved;
 pub(crate) use skeleton::PurePoint;
 use skeleton::{Circle, Line, Origin, Plate, PureSkeletal, Skeletal};
 use solid::{Fallen, Frustum, Ground, RoundBox, SharpBox, Spheroid, Tube};
@@ -31,6 +44,12 @@ pub(crate) trait Kernel: Send + Sync {
 
     /// Whether the gradient may jump somewhere in `region`.
     fn creased(&self, region: &Aabb) -> bool;
+
+    /// Whether it is creased at the edges of many facets, most of them faint, so that only samples tell where that
+    /// matters.
+    fn is_faceted(&self) -> bool {
+        false
+    }
 }
 
 /// A compiled primitive.
@@ -55,6 +74,10 @@ pub(crate) enum Leaf {
     Spheroid(Fallen<Spheroid>),
     Ground(Fallen<Ground>),
     Import(Import),
+    Inflated(Inflated),
+    Extrusion(Fallen<Extrusion>),
+    Revolved(Fallen<Revolved>),
+    Pipe(Fallen<Pipe>),
 }
 
 /// Runs `$body` with `$kernel` bound to the leaf's own type, so that loops over samples are compiled for it.
@@ -80,6 +103,10 @@ macro_rules! with_kernel {
             $crate::leaf::Leaf::Spheroid($kernel) => $body,
             $crate::leaf::Leaf::Ground($kernel) => $body,
             $crate::leaf::Leaf::Import($kernel) => $body,
+            $crate::leaf::Leaf::Inflated($kernel) => $body,
+            $crate::leaf::Leaf::Extrusion($kernel) => $body,
+            $crate::leaf::Leaf::Revolved($kernel) => $body,
+            $crate::leaf::Leaf::Pipe($kernel) => $body,
         }
     };
 }
@@ -185,6 +212,10 @@ impl Leaf {
             Primitive::Mesh(p) => {
                 Self::Import(Import::new(flat(Vec3::ZERO), p.distance.clone(), Falloff::of_width(p.falloff)))
             }
+            Primitive::Inflation(p) => sketched::inflation(p, child_from_world),
+            Primitive::LinearSweep(p) => sketched::linear_sweep(p, child_from_world),
+            Primitive::Revolution(p) => sketched::revolution(p, child_from_world),
+            Primitive::PathSweep(p) => sketched::path_sweep(p, child_from_world),
         }
     }
 
@@ -192,8 +223,12 @@ impl Leaf {
         with_kernel!(self, kernel => kernel.bound(region))
     }
 
-    pub fn creased(&self, region: &Aabb) -> bool {
-        with_kernel!(self, kernel => kernel.creased(region))
+    pub fn crease(&self, region: &Aabb) -> Crease {
+        with_kernel!(self, kernel => match kernel.creased(region) {
+            false => Crease::None,
+            true if kernel.is_faceted() => Crease::Faceted,
+            true => Crease::Sharp,
+        })
     }
 
     pub fn at<S: Scalar>(&self, p: Triple<S>) -> Slope<S> {
@@ -217,89 +252,4 @@ pub(crate) fn even_scale(map: &DAffine3) -> Option<f64> {
     let mean = (square.x_axis.x + square.y_axis.y + square.z_axis.z) / 3.0;
     let off = (square - DMat3::from_diagonal(DVec3::splat(mean))).to_cols_array();
     off.iter().all(|x| x.abs() <= 1e-6 * mean).then(|| mean.sqrt())
-}
-
-/// The box outside which a primitive's field is 0, in its own space.
-pub(crate) fn support(primitive: &Primitive) -> Aabb {
-    let (surface, depth, width) = surface_box(primitive);
-    let width = Falloff::new(width, depth).width();
-    let reached = match primitive {
-        Primitive::Cone(p) => widened(p.from, p.to, [p.radius_from, p.radius_to], width),
-        Primitive::Cylinder(p) => widened(p.from, p.to, [p.radius, p.radius], width),
-        _ => surface.grown(width),
-    };
-    reached.grown(1e-5 * reached.size().max_element())
-}
-
-/// The box around a cone or cylinder whose base, top and side have all moved out by `width`: its rims stay
-/// sharp, and so reach farther.
-fn widened(from: Vec3, to: Vec3, [radius_from, radius_to]: [f32; 2], width: f32) -> Aabb {
-    let length = from.distance(to);
-    let (axis, growth) = ((to - from) / length, (radius_to - radius_from) / length);
-    let out = width * (1.0 + growth * growth).sqrt();
-    let radius = |z: f32| (radius_from + growth * z + out).max(0.0);
-    around_axis((from - axis * width, radius(-width)), (to + axis * width, radius(length + width)))
-}
-
-/// The box around two discs about the line through their centres, each given by centre and radius.
-fn around_axis((from, r0): (Vec3, f32), (to, r1): (Vec3, f32)) -> Aabb {
-    let axis = (to - from).normalize_or(Vec3::Z);
-    let reach = (Vec3::ONE - axis * axis).max(Vec3::ZERO).map(f32::sqrt);
-    Aabb::around(from, reach * r0).union(&Aabb::around(to, reach * r1))
-}
-
-/// The box around a disc.
-fn around_disc(center: Vec3, normal: Vec3, radius: f32) -> Aabb {
-    let normal = normal.normalize_or(Vec3::Z);
-    Aabb::around(center, (Vec3::ONE - normal * normal).max(Vec3::ZERO).map(f32::sqrt) * radius)
-}
-
-/// The box around a primitive's surface in its own space, its depth and its falloff width if given.
-pub(crate) fn surface_box(primitive: &Primitive) -> (Aabb, f32, Option<f32>) {
-    match primitive {
-        Primitive::Point(p) => (Aabb::around(p.center, Vec3::splat(p.radius)), p.radius, p.falloff),
-        Primitive::Segment(p) => (Aabb::from_corners(p.from, p.to).grown(p.radius), p.radius, p.falloff),
-        Primitive::Polyline(p) => {
-            let ball = |q: &PolylinePoint| Aabb::around(q.at, Vec3::splat(q.radius));
-            let surface = p.points.iter().fold(Aabb::EMPTY, |b, q| b.union(&ball(q)));
-            (surface, p.points.iter().fold(0.0f32, |r, q| r.max(q.radius)), p.falloff)
-        }
-        Primitive::Disc(p) => {
-            let half = 0.5 * p.thickness;
-            (around_disc(p.center, p.normal, p.radius - half).grown(half), half, p.falloff)
-        }
-        Primitive::Polygon(p) => {
-            let (normal, origin) = polygon::plane(&p.points).unwrap_or((Vec3::Z, p.points[0]));
-            let flattened = p.points.iter().map(|q| *q - normal * (*q - origin).dot(normal));
-            let half = 0.5 * p.thickness;
-            (Aabb::of_points(flattened).grown(half), half, p.falloff)
-        }
-        Primitive::Box(p) => (Aabb::around(p.center, 0.5 * p.size), 0.5 * p.size.min_element(), p.falloff),
-        Primitive::Cylinder(p) => {
-            let surface = around_axis((p.from, p.radius), (p.to, p.radius));
-            (surface, p.radius.min(0.5 * p.from.distance(p.to)), p.falloff)
-        }
-        Primitive::Cone(p) => {
-            let surface = around_axis((p.from, p.radius_from), (p.to, p.radius_to));
-            (surface, 0.5 * p.radius_from.max(p.radius_to).min(p.from.distance(p.to)), p.falloff)
-        }
-        Primitive::Torus(p) => {
-            let ring = around_disc(p.center, p.normal, p.major_radius);
-            (ring.grown(p.minor_radius), p.minor_radius, p.falloff)
-        }
-        Primitive::Ellipsoid(p) => (Aabb::around(p.center, p.radii), p.radii.min_element(), p.falloff),
-        Primitive::HalfSpace(p) => {
-            // Its ball, without what lies above the plane for axis-aligned planes.
-            let n = p.normal.normalize_or(Vec3::Z);
-            let ball = Aabb::around(p.point, Vec3::splat(p.extent));
-            let low = n.map(|c| if c > 0.999_999 { 0.0 } else { p.extent });
-            let high = n.map(|c| if c < -0.999_999 { 0.0 } else { p.extent });
-            let half = Aabb { min: p.point - high, max: p.point + low };
-            (ball.intersection(&half), p.extent, Some(p.falloff))
-        }
-        Primitive::Mesh(p) => {
-            let bounds = p.distance.bounds();
-            (Aabb { min: bounds.min, max: bounds.max }, p.falloff, Some(p.falloff))
-        }
-    }
 }

@@ -19,6 +19,11 @@ pub(crate) trait Solid: Send + Sync {
 
     /// Whether the gradient of the distance may jump in the range.
     fn creased(&self, range: &Range) -> bool;
+
+    /// See [`Kernel::is_faceted`].
+    fn is_faceted(&self) -> bool {
+        false
+    }
 }
 
 /// A solid with its place and falloff.
@@ -56,11 +61,15 @@ impl<T: Solid> Kernel for Fallen<T> {
     fn creased(&self, region: &Aabb) -> bool {
         self.solid.creased(&self.frame.range(region))
     }
+
+    fn is_faceted(&self) -> bool {
+        self.solid.is_faceted()
+    }
 }
 
 /// The larger of two distances, with its gradient.
 #[inline(always)]
-fn farther<S: Scalar>(a: Slope<S>, b: Slope<S>) -> Slope<S> {
+pub(super) fn farther<S: Scalar>(a: Slope<S>, b: Slope<S>) -> Slope<S> {
     if b.value.value() > a.value.value() { b } else { a }
 }
 
@@ -71,13 +80,13 @@ fn sign<S: Scalar>(x: S) -> S {
 }
 
 /// Whether two functions with these bounds can be equal.
-fn meet(a: (f32, f32), b: (f32, f32)) -> bool {
+pub(super) fn meet(a: (f32, f32), b: (f32, f32)) -> bool {
     a.0 <= b.1 && b.0 <= a.1
 }
 
 /// `|q_axis| − half` with its gradient.
 #[inline(always)]
-fn slab<S: Scalar>(q: Triple<S>, axis: usize, half: f32) -> Slope<S> {
+pub(super) fn slab<S: Scalar>(q: Triple<S>, axis: usize, half: f32) -> Slope<S> {
     let side = sign(q[axis]);
     let gradient = std::array::from_fn(|a| if a == axis { side } else { S::of(0.0) });
     let piece = 2 * axis as u32 + if q[axis].value() < 0.0 { 1 } else { 2 };
@@ -290,7 +299,8 @@ impl Spheroid {
     fn outside<S: Scalar>(&self, q: Triple<S>) -> Slope<S> {
         let r = self.radii;
         let mut t = S::of(0.0);
-        for _ in 0..6 {
+        // Six steps leave the direction 0.4 % off near the rim of a disc thirty times as wide as thick.
+        for _ in 0..8 {
             let inverse: Triple<S> = std::array::from_fn(|i| S::of(1.0) / (S::of(r[i] * r[i]) + t));
             let p: Triple<S> = std::array::from_fn(|i| S::of(r[i]) * q[i] * inverse[i]);
             let squares: Triple<S> = std::array::from_fn(|i| p[i] * p[i]);

@@ -110,6 +110,9 @@ pub enum SceneProblem {
         /// Why not.
         reason: String,
     },
+    /// A drawing is no outline of a solid.
+    #[error("the drawing: {0}")]
+    Drawing(String),
 }
 
 impl From<SceneProblem> for SceneError {

@@ -1,8 +1,8 @@
 //! Scenes and their files: a tree with a title, read from and written to JSON text.
 //!
 //! Reach for [`Scene::from_bytes`] and [`Scene::to_text`]; what a file looks like is in
-//! `docs/scene-format.md`. Nothing here opens a file: bytes come in, text goes out, and a [`MeshSource`]
-//! answers for the mesh files that a scene names.
+//! `docs/scene-format.md`. Nothing here opens a file: bytes come in, text goes out, and [`SceneSources`]
+//! answer for the mesh files that a scene names and the drawings that it holds.
 
 mod bounds;
 mod check;
@@ -20,6 +20,7 @@ mod write;
 
 use crate::imported::ImportedMesh;
 use crate::node::NodeRef;
+use crate::sketched::{Drawing, Template};
 use mesh::MeshDistance;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,7 +37,7 @@ pub use schema::scene_schema;
 pub const VERSION: u64 = 1;
 /// Largest scene file, bytes.
 pub const MAX_FILE_BYTES: usize = 64 << 20;
-/// Most JSON objects in a scene file: nodes and points of polylines.
+/// Most JSON objects in a scene file: nodes, and points of polylines and drawings.
 pub const MAX_OBJECTS: usize = 250_000;
 /// Most nodes in a scene, a shared one counted wherever it stands.
 pub const MAX_NODES: u64 = 1_000_000;
@@ -44,7 +45,7 @@ pub const MAX_NODES: u64 = 1_000_000;
 pub const MAX_DEPTH: usize = 256;
 
 /// The names of all node types in scene files: primitives, operators, warps.
-pub const TYPE_NAMES: [&str; 25] = [
+pub const TYPE_NAMES: [&str; 29] = [
     "point",
     "segment",
     "polyline",
@@ -57,6 +58,10 @@ pub const TYPE_NAMES: [&str; 25] = [
     "ellipsoid",
     "half_space",
     "mesh",
+    "inflation",
+    "sweep",
+    "revolution",
+    "path_sweep",
     "union",
     "intersection",
     "difference",
@@ -99,19 +104,19 @@ impl Scene {
     /// - **Promises:** what comes back passes [`Self::check`]; [`Self::to_text`] of it reads back equal.
     /// - **Cost:** linear in the text; at most [`MAX_FILE_BYTES`] and [`MAX_OBJECTS`] are looked at.
     /// - **Errors:** anything that is not a legal scene, with its line, column and node.
-    pub fn from_bytes(bytes: &[u8], meshes: &mut dyn MeshSource) -> Result<Self, SceneError> {
-        read::scene(bytes, meshes)
+    pub fn from_bytes(bytes: &[u8], sources: &mut dyn SceneSources) -> Result<Self, SceneError> {
+        read::scene(bytes, sources)
     }
 
     /// Reads a scene file to its end, but never more than [`MAX_FILE_BYTES`].
     ///
     /// Errors: as [`Self::from_bytes`], and what the reader says.
-    pub fn read(input: impl Read, meshes: &mut dyn MeshSource) -> Result<Self, SceneError> {
+    pub fn read(input: impl Read, sources: &mut dyn SceneSources) -> Result<Self, SceneError> {
         let mut bytes = Vec::new();
         // One byte more than legal, so that a file which is too large is told from one that just fits.
         let mut input = input.take(MAX_FILE_BYTES as u64 + 1);
         input.read_to_end(&mut bytes).map_err(|e| SceneProblem::Unreadable(e.to_string()))?;
-        Self::from_bytes(&bytes, meshes)
+        Self::from_bytes(&bytes, sources)
     }
 
     /// The text of the scene's file: the same bytes for equal scenes that share alike.
@@ -159,21 +164,31 @@ impl From<&ImportedMesh> for MeshReference {
     }
 }
 
-/// Finds the meshes that scenes refer to. The upper room opens the files.
-pub trait MeshSource {
+/// What scenes need from the rooms above to be read.
+pub trait SceneSources {
     /// The mesh in the file that `reference` names. Asked once for each file and hash in a scene.
     ///
     /// Errors: why there is none, in words for the user: no such file, another hash, not a mesh.
-    fn load(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String>;
+    fn mesh(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String>;
+
+    /// The template of a legal drawing, right as far as `falloff` mm beyond the curve, or as far as the
+    /// drawing is deep by the natural falloff. Asked once for equal drawings with equal falloffs in a scene.
+    ///
+    /// Errors: why there is none, in words for the user: no outline, too small.
+    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String>;
 }
 
-/// For scenes without meshes: has none.
+/// For scenes without meshes and drawings: has none.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct NoMeshes;
+pub struct NoSources;
 
-impl MeshSource for NoMeshes {
-    fn load(&mut self, _: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+impl SceneSources for NoSources {
+    fn mesh(&mut self, _: &MeshReference) -> Result<Arc<MeshDistance>, String> {
         Err("mesh files are not read here".into())
+    }
+
+    fn template(&mut self, _: &Drawing, _: Option<f32>) -> Result<Arc<Template>, String> {
+        Err("drawings are not read here".into())
     }
 }
 

@@ -114,6 +114,7 @@ fn at<'a>(value: &'a Value, steps: &[Step]) -> Option<&'a Value> {
 fn in_our_words(expected: &str) -> String {
     match expected {
         "f32" => "a number".into(),
+        "a sequence of 2 f32 values" => "two numbers, like [0, 10]".into(),
         "a sequence of 3 f32 values" => "three numbers, like [0, 0, 10]".into(),
         "fewer elements in array" => "a shorter list".into(),
         "a string" => "a text".into(),

@@ -5,7 +5,7 @@ use super::locate::{self, Step};
 use super::parameters::{self, FieldFault, described};
 use super::read_node::NodeReader;
 use super::strict::Strict;
-use super::{MeshSource, Scene, VERSION, bounds, definitions};
+use super::{Scene, SceneSources, VERSION, bounds, definitions};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::sync::Arc;
@@ -30,14 +30,14 @@ type Migration = fn(&mut Map<String, Value>);
 const MIGRATIONS: [Migration; VERSION as usize - 1] = [];
 
 /// See [`Scene::from_bytes`].
-pub(super) fn scene(bytes: &[u8], meshes: &mut dyn MeshSource) -> Result<Scene, SceneError> {
+pub(super) fn scene(bytes: &[u8], sources: &mut dyn SceneSources) -> Result<Scene, SceneError> {
     if bytes.len() > super::MAX_FILE_BYTES {
         return Err(SceneProblem::TooLarge.into());
     }
     let text = text(bytes)?;
     bounds::check(text)?;
     let value = json(text)?;
-    from_value(value, meshes).map_err(|fault| SceneError {
+    from_value(value, sources).map_err(|fault| SceneError {
         at: Some(locate::position(text, &fault.steps)),
         node: locate::node_label(&fault.steps),
         problem: fault.problem,
@@ -72,7 +72,7 @@ fn json(text: &str) -> Result<Value, SceneError> {
     })
 }
 
-fn from_value(value: Value, meshes: &mut dyn MeshSource) -> Result<Scene, Fault> {
+fn from_value(value: Value, sources: &mut dyn SceneSources) -> Result<Scene, Fault> {
     let shown = described(&value);
     let Value::Object(mut file) = value else {
         let problem = parameters::wrong("the file", shown, "an object with `format`, `version` and `root`");
@@ -86,7 +86,7 @@ fn from_value(value: Value, meshes: &mut dyn MeshSource) -> Result<Scene, Fault>
     let root = parameters::need(&mut file, "root", "the tree, an object with `type`")?;
     parameters::nothing_left(&file, &["format", "version", "title", "define", "root"])?;
 
-    let mut reader = NodeReader::new(meshes);
+    let mut reader = NodeReader::new(sources);
     define_all(define, &mut reader)?;
     let root = reader.read_from(vec![Step::key("root")], root)?;
     Ok(Scene { title, definitions: Arc::new(reader.into_definitions()), root })

@@ -5,11 +5,12 @@ use super::error::SceneProblem;
 use super::locate::Step;
 use super::parameters::{self, FieldFault, described};
 use super::read::Fault;
-use super::{MAX_DEPTH, MAX_NODES, MeshReference, MeshSource, TYPE_NAMES};
+use super::{MAX_DEPTH, MAX_NODES, MeshReference, SceneSources, TYPE_NAMES};
 use crate::imported::ImportedMesh;
 use crate::node::{Color, Node, NodeRef, Shape};
 use crate::operator::{Operator, Sharpness};
-use crate::primitive::Primitive;
+use crate::primitive::{Drawn, Primitive};
+use crate::sketched::{Drawing, Template};
 use crate::warp::Warp;
 use mesh::MeshDistance;
 use serde_json::{Map, Value};
@@ -25,9 +26,11 @@ const WARP_COMMON: [&str; 6] = ["child", "type", "name", "color", "muted", "cons
 
 /// Reads nodes, knowing the definitions read so far.
 pub(super) struct NodeReader<'a> {
-    meshes: &'a mut dyn MeshSource,
+    sources: &'a mut dyn SceneSources,
     /// By file and hash.
     loaded: BTreeMap<(String, String), Arc<MeshDistance>>,
+    /// The drawings read so far, by falloff, with their templates.
+    solved: Vec<(Option<f32>, Arc<Drawing>, Arc<Template>)>,
     definitions: BTreeMap<String, (NodeRef, Size)>,
     /// From the top of the file to the value being read.
     steps: Vec<Step>,
@@ -41,8 +44,9 @@ enum Kind {
 }
 
 impl<'a> NodeReader<'a> {
-    pub(super) fn new(meshes: &'a mut dyn MeshSource) -> Self {
-        Self { meshes, loaded: BTreeMap::new(), definitions: BTreeMap::new(), steps: Vec::new() }
+    pub(super) fn new(sources: &'a mut dyn SceneSources) -> Self {
+        let (loaded, solved, definitions) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
+        Self { sources, loaded, solved, definitions, steps: Vec::new() }
     }
 
     /// Reads a definition; those that it uses must have been read.
@@ -151,7 +155,28 @@ impl<'a> NodeReader<'a> {
             };
             self.fault_in((field, problem))
         })?;
+        if let Shape::Primitive(primitive) = &mut node.shape
+            && let Some(drawn) = primitive.drawn()
+        {
+            self.solve(drawn)?;
+        }
         Ok((node, size))
+    }
+
+    /// Gives a drawn primitive, whose numbers are legal, its template. Equal drawings become one.
+    fn solve(&mut self, drawn: Drawn) -> Result<(), Fault> {
+        let Drawn { drawing, falloff, template } = drawn;
+        let known = self.solved.iter().find(|(width, known, _)| *width == falloff && known == drawing);
+        if let Some((_, known, solved)) = known {
+            (*drawing, *template) = (known.clone(), solved.clone());
+            return Ok(());
+        }
+        *template = self
+            .sources
+            .template(drawing, falloff)
+            .map_err(|reason| self.fault_in((vec![Step::key("drawing")], SceneProblem::Drawing(reason))))?;
+        self.solved.push((falloff, drawing.clone(), template.clone()));
+        Ok(())
     }
 
     /// A node with the fields that every node may have, still without a shape.
@@ -255,6 +280,10 @@ impl<'a> NodeReader<'a> {
             "torus" => parameters::all(fields, &COMMON).map(Primitive::Torus),
             "ellipsoid" => parameters::all(fields, &COMMON).map(Primitive::Ellipsoid),
             "half_space" => parameters::all(fields, &COMMON).map(Primitive::HalfSpace),
+            "inflation" => parameters::all(fields, &COMMON).map(Primitive::Inflation),
+            "sweep" => parameters::all(fields, &COMMON).map(Primitive::LinearSweep),
+            "revolution" => parameters::all(fields, &COMMON).map(Primitive::Revolution),
+            "path_sweep" => parameters::all(fields, &COMMON).map(Primitive::PathSweep),
             _ => {
                 let reference = parameters::all(fields, &COMMON).map_err(|fault| self.fault_in(fault))?;
                 return self.mesh(reference).map(Primitive::Mesh);
@@ -268,7 +297,7 @@ impl<'a> NodeReader<'a> {
         let distance = match self.loaded.get(&key) {
             Some(distance) => distance.clone(),
             None => {
-                let distance = self.meshes.load(&reference).map_err(|reason| {
+                let distance = self.sources.mesh(&reference).map_err(|reason| {
                     let problem =
                         SceneProblem::Mesh { file: super::error::shortened(&reference.file), reason };
                     self.fault_in((vec![Step::key("file")], problem))

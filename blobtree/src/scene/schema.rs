@@ -4,6 +4,7 @@ use super::{MeshReference, TYPE_NAMES, VERSION};
 use crate::primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, Segment, Torus,
 };
+use crate::sketched::{Inflation, LinearSweep, PathSweep, Revolution};
 use crate::warp::{AffineMap, Bend, Taper, Transform, Twist};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
@@ -58,6 +59,10 @@ fn node(name: &str) -> Value {
         "ellipsoid" => parameters::<Ellipsoid>(),
         "half_space" => parameters::<HalfSpace>(),
         "mesh" => parameters::<MeshReference>(),
+        "inflation" => parameters::<Inflation>(),
+        "sweep" => parameters::<LinearSweep>(),
+        "revolution" => parameters::<Revolution>(),
+        "path_sweep" => parameters::<PathSweep>(),
         "transform" => parameters::<Transform>(),
         "affine" => parameters::<AffineMap>(),
         "taper" => parameters::<Taper>(),

@@ -5,6 +5,7 @@ use crate::node::{Node, NodeRef, Shape};
 use crate::primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, Primitive, Segment, Torus,
 };
+use crate::sketched::{Inflation, LinearSweep, PathSweep, Revolution};
 use crate::warp::{AffineMap, Bend, Taper, Transform, Twist, Warp};
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 use serde_json::ser::Formatter;
@@ -213,6 +214,10 @@ enum Parameters<'a> {
     Ellipsoid(&'a Ellipsoid),
     HalfSpace(&'a HalfSpace),
     Mesh(MeshReference),
+    Inflation(&'a Inflation),
+    LinearSweep(&'a LinearSweep),
+    Revolution(&'a Revolution),
+    PathSweep(&'a PathSweep),
     Transform(&'a Transform),
     Affine(&'a AffineMap),
     Taper(&'a Taper),
@@ -236,6 +241,10 @@ impl<'a> Parameters<'a> {
             Shape::Primitive(Primitive::Ellipsoid(p)) => Self::Ellipsoid(p),
             Shape::Primitive(Primitive::HalfSpace(p)) => Self::HalfSpace(p),
             Shape::Primitive(Primitive::Mesh(p)) => Self::Mesh(p.into()),
+            Shape::Primitive(Primitive::Inflation(p)) => Self::Inflation(p),
+            Shape::Primitive(Primitive::LinearSweep(p)) => Self::LinearSweep(p),
+            Shape::Primitive(Primitive::Revolution(p)) => Self::Revolution(p),
+            Shape::Primitive(Primitive::PathSweep(p)) => Self::PathSweep(p),
             Shape::Warp(Warp::Transform(w), _) => Self::Transform(w),
             Shape::Warp(Warp::Affine(w), _) => Self::Affine(w),
             Shape::Warp(Warp::Taper(w), _) => Self::Taper(w),

@@ -5,14 +5,14 @@ use crate::build::{Build, point};
 use crate::node::{NodeRef, Shape};
 use crate::operator::Operator;
 use crate::random::RandomTree;
-use crate::scene::{MAX_DEPTH, MAX_FILE_BYTES, NoMeshes, Scene, SceneProblem};
+use crate::scene::{MAX_DEPTH, MAX_FILE_BYTES, NoSources, Scene, SceneProblem};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
 /// Reads, and fails if that takes long.
 fn problem(text: impl AsRef<[u8]>) -> Option<SceneProblem> {
     let start = Instant::now();
-    let result = Scene::from_bytes(text.as_ref(), &mut NoMeshes);
+    let result = Scene::from_bytes(text.as_ref(), &mut NoSources);
     // None takes half a second; the rest is room for machines with other work.
     assert!(start.elapsed() < Duration::from_secs(10), "took {:?}", start.elapsed());
     result.err().map(|e| {
@@ -42,7 +42,7 @@ fn flipped_bits_give_an_error_or_a_legal_scene() {
             let at = rng.usize(..bytes.len());
             bytes[at] ^= 1 << rng.u32(..8);
         }
-        if let Ok(scene) = Scene::from_bytes(&bytes, &mut NoMeshes) {
+        if let Ok(scene) = Scene::from_bytes(&bytes, &mut NoSources) {
             assert_eq!(scene.check(), Ok(()), "seed {seed}");
         }
     }
@@ -196,10 +196,10 @@ fn bytes_that_are_no_text_and_files_that_are_empty_are_refused() {
 
 #[test]
 fn a_reader_without_end_and_one_that_fails_are_errors() {
-    let endless = Scene::read(std::io::repeat(b' '), &mut NoMeshes).expect_err("it never ends");
+    let endless = Scene::read(std::io::repeat(b' '), &mut NoSources).expect_err("it never ends");
     assert_eq!(endless.problem, SceneProblem::TooLarge);
     let folder = std::fs::File::open(std::env::temp_dir()).expect("there is a folder for temporary files");
-    let failed = Scene::read(folder, &mut NoMeshes).expect_err("a folder has no text");
+    let failed = Scene::read(folder, &mut NoSources).expect_err("a folder has no text");
     assert!(matches!(failed.problem, SceneProblem::Unreadable(_)));
 }
 

@@ -85,6 +85,23 @@ fn wrong_parameters_are_told_with_what_would_be_right() {
             r#"{"type": "mesh", "file": "bunny.stl", "sha256": "00"}"#,
             "mesh `bunny.stl`: mesh files are not read here",
         ),
+        (r#"{"type": "inflation", "drawing": {"strokes": []}}"#, "the drawing: it encloses nothing"),
+        (
+            r#"{"type": "sweep", "length": 2, "drawing": {"strokes": [{"points": [{"at": [0]}]}]}}"#,
+            "`drawing.strokes[0].points[0].at` is a list of 1, not two numbers, like [0, 10]",
+        ),
+        (
+            r#"{"type": "revolution", "drawing": {"strokes": [{"points": [{"at": [0, 2e5]}]}]}}"#,
+            "`drawing.strokes.points.at` is Vec2(0.0, 200000.0), not two coordinates of -100000 to 100000 mm",
+        ),
+        (
+            r#"{"type": "inflation", "plane": {"up": [2, 0, 0]}, "drawing": {"strokes": []}}"#,
+            "`plane.up` is Vec3(2.0, 0.0, 0.0), not a direction other than `plane.right`",
+        ),
+        (
+            r#"{"type": "path_sweep", "path": [[1, 2, 3], [1, 2, 3]], "drawing": {"strokes": []}}"#,
+            "`path` is points all in one place, not at least two places",
+        ),
     ];
     for (root, expected) in cases {
         assert_eq!(about(root), format!("node /: {expected}"), "{root}");

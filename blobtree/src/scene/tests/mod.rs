@@ -5,10 +5,11 @@ mod messages;
 mod published;
 mod round_trip;
 
-use super::{NoMeshes, Scene, SceneError};
+use super::{Scene, SceneError};
+use crate::random::PolygonSources;
 
 fn read(text: &str) -> Result<Scene, SceneError> {
-    Scene::from_bytes(text.as_bytes(), &mut NoMeshes)
+    Scene::from_bytes(text.as_bytes(), &mut PolygonSources)
 }
 
 /// A file with this root.

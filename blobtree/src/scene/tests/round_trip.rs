@@ -4,8 +4,9 @@ use super::{ALL_TYPES, file, read};
 use crate::build::{Build, point, union};
 use crate::node::{Node, NodeRef, Shape};
 use crate::primitive::Primitive;
-use crate::random::RandomTree;
-use crate::scene::{MeshReference, MeshSource, NoMeshes, Scene};
+use crate::random::{PolygonSources, RandomTree};
+use crate::scene::{MeshReference, NoSources, Scene, SceneSources};
+use crate::sketched::{Drawing, Template};
 use glam::Vec3;
 use mesh::MeshDistance;
 use std::collections::HashMap;
@@ -27,7 +28,9 @@ fn sharing(scene: &Scene) -> Vec<usize> {
 #[test]
 fn random_scenes_come_back_equal_and_share_the_same_nodes() {
     for seed in 0..400 {
-        let scene = Scene::new(RandomTree::new(seed).tree()).titled(format!("seed \"{seed}\""));
+        let mut random = RandomTree::new(seed);
+        random.drawn = seed % 2 == 0;
+        let scene = Scene::new(random.tree()).titled(format!("seed \"{seed}\""));
         let text = scene.to_text().expect("random scenes are legal");
         let back = read(&text).unwrap_or_else(|e| panic!("seed {seed}: {e}\n{text}"));
         assert_eq!((&back.title, &back.root), (&scene.title, &scene.root), "seed {seed}");
@@ -105,7 +108,7 @@ fn numbers_come_back_bit_by_bit_and_short() {
 fn a_byte_order_mark_and_any_white_space_are_welcome() {
     let text = format!("\u{feff}\r\n\t{}\r\n", file(r#"{"type": "union", "children": []}"#));
     assert!(read(&text).is_ok());
-    assert!(Scene::read(text.as_bytes(), &mut NoMeshes).is_ok());
+    assert!(Scene::read(text.as_bytes(), &mut NoSources).is_ok());
 }
 
 /// A box for every file name but one, and how often it was asked.
@@ -113,8 +116,12 @@ struct Boxes {
     asked: Vec<String>,
 }
 
-impl MeshSource for Boxes {
-    fn load(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+impl SceneSources for Boxes {
+    fn template(&mut self, _: &Drawing, _: Option<f32>) -> Result<Arc<Template>, String> {
+        Err("there are no drawings here".into())
+    }
+
+    fn mesh(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {
         self.asked.push(reference.file.clone());
         if reference.file == "gone.stl" {
             return Err("there is no such file".into());
@@ -150,4 +157,49 @@ fn each_mesh_file_is_asked_for_once_and_missing_ones_are_told() {
     let bad_hash = file(r#"{"type": "mesh", "file": "a.stl", "sha256": "0A"}"#);
     let error = Scene::from_bytes(bad_hash.as_bytes(), &mut boxes).expect_err("a short hash").to_string();
     assert!(error.ends_with("node /: `sha256` is 0A, not 64 lower-case hexadecimal digits"), "{error}");
+}
+
+/// Solves drawings as polygons and counts them.
+struct Counted {
+    solved: usize,
+}
+
+impl SceneSources for Counted {
+    fn mesh(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+        PolygonSources.mesh(reference)
+    }
+
+    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String> {
+        self.solved += 1;
+        PolygonSources.template(drawing, falloff)
+    }
+}
+
+#[test]
+fn equal_drawings_are_solved_once_for_each_falloff_and_shared() {
+    let node = |rest: &str, x: f32| {
+        format!(
+            r#"{{{rest}, "drawing": {{"strokes": [{{"points": [{{"at": [0, 0]}}, {{"at": [{x}, 0]}}, {{"at": [0, 5]}}]}}]}}}}"#
+        )
+    };
+    let text = file(&format!(
+        r#"{{"type": "union", "children": [{}, {}, {}, {}]}}"#,
+        node(r#""type": "inflation""#, 5.0),
+        node(r#""type": "sweep", "length": 4"#, 5.0),
+        node(r#""type": "sweep", "length": 4, "falloff": 2"#, 5.0),
+        node(r#""type": "revolution""#, 6.0),
+    ));
+    let mut counted = Counted { solved: 0 };
+    let scene = Scene::from_bytes(text.as_bytes(), &mut counted).expect("legal");
+    assert_eq!(counted.solved, 3);
+    let mut children = scene.root.children().iter();
+    let mut next = || children.next().map(|child| child.shape.clone());
+    let (Some(Shape::Primitive(Primitive::Inflation(a))), Some(Shape::Primitive(Primitive::LinearSweep(b)))) =
+        (next(), next())
+    else {
+        panic!("an inflation and a sweep")
+    };
+    assert!(Arc::ptr_eq(&a.template, &b.template) && Arc::ptr_eq(&a.drawing, &b.drawing));
+    let Err(error) = Scene::from_bytes(text.as_bytes(), &mut NoSources) else { panic!("nothing solves it") };
+    assert!(error.to_string().ends_with("node /0: the drawing: drawings are not read here"), "{error}");
 }

@@ -1,0 +1,32 @@
+//! The field of a drawing: what a sketched primitive sweeps.
+
+use super::FieldImage;
+use glam::Vec2;
+
+/// What the sketch room makes of a drawing for the tree to sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Template {
+    /// The smoothed signed distance to the drawn curve, mm, below 0 inside. Right as far as `falloff` outside;
+    /// from there on, and at the image's border, at least `falloff`.
+    pub distance: FieldImage,
+    /// How hard the pen pressed near a place, 0 to 1; none where it always pressed alike.
+    pub pressure: Option<FieldImage>,
+    /// How far the influence reaches beyond the curve, mm.
+    pub falloff: f32,
+    /// The largest distance from the curve to a point inside, mm.
+    pub depth: f32,
+    /// The curve itself: closed, outlines counter-clockwise, holes clockwise, mm.
+    pub contours: Vec<Vec<Vec2>>,
+    /// Where the curve has sharp corners, mm.
+    pub corners: Vec<Vec2>,
+}
+
+/// The template of an empty drawing: 0 everywhere.
+impl Default for Template {
+    fn default() -> Self {
+        let far = vec![1.0; 9];
+        let distance = FieldImage::new(Vec2::ZERO, 1.0, [3, 3], far).expect("nine finite samples");
+        let (contours, corners) = (Vec::new(), Vec::new());
+        Self { distance, pressure: None, falloff: 1.0, depth: 1.0, contours, corners }
+    }
+}

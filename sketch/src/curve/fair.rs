@@ -1,0 +1,279 @@
+//! Smoothing of a closed line as far as it is shaky, its corners kept.
+
+use super::Contour;
+use super::banded;
+use super::corners::{self, Closed, Wishes, meeting};
+use super::line::{Sample, noise};
+use super::polygon;
+use glam::DVec2;
+
+/// Longest step between samples, in extents; longer edges get samples on their way.
+const STEP: f64 = 0.012;
+/// What a sample put on the way counts beside one of the pen: the edge is a guess between two places that are not.
+const WEIGHT_ON_THE_WAY: f64 = 0.02;
+/// Shortest step between points of the result, in extents.
+const SHORTEST_STEP: f64 = 0.003;
+/// Smoothing lengths that are tried, in extents; wiggles shorter than six times the length go.
+const LENGTHS: [f64; 10] = [0.003, 0.005, 0.008, 0.012, 0.018, 0.027, 0.04, 0.055, 0.075, 0.1];
+/// Steps between samples up to this, in extents, may have cut off a corner.
+const CUT_TIP: f64 = 0.05;
+/// Loops up to this long, in extents, that smoothing leaves are cut off.
+const LEAST_LOOP: f64 = 0.25;
+/// Smoothing length that one circling gesture asks for, in extents.
+const LENGTH_OF_A_GESTURE: f64 = 0.02;
+
+/// A closed line with corners, ready to be smoothed.
+struct Sides {
+    /// Samples from one corner to the next, without the corners; one closed run where there is no corner.
+    runs: Vec<Vec<Sample>>,
+    /// The corner's sample before each run.
+    corners: Vec<Sample>,
+    extent: f64,
+    noise: f64,
+}
+
+/// The smooth curve that the samples of a closed line mean; none where nothing is left of it.
+///
+/// Noise is measured from the samples; of several amounts of smoothing the one with the least expected error is
+/// taken (Mallows' C_p). Each side of a corner is smoothed on its own and prolonged to where both meet.
+pub(super) fn fair(samples: &[Sample], wishes: &Wishes) -> Option<Contour> {
+    let extent = super::line::extent(samples);
+    if samples.len() < 3 || extent <= 0. {
+        return None;
+    }
+    let noise = noise(samples);
+    let dense = densified(samples, STEP * extent);
+    let lengths = lengths(&dense);
+    let line = Closed { samples: &dense, lengths: &lengths, extent, noise };
+    let found = corners::find(&line, wishes);
+    let sides = split(&dense, &found, extent, noise);
+    let smooth = least_expected_error(&sides);
+    let mut contour = if sides.corners.is_empty() {
+        Contour { points: thinned(&smooth[0], SHORTEST_STEP * extent), corners: Vec::new() }
+    } else {
+        joined(&sides, &smooth)
+    };
+    untangle(&mut contour, LEAST_LOOP * extent);
+    (contour.points.len() >= 3).then_some(contour)
+}
+
+/// The smooth line that the samples of an open line mean, from end to end.
+pub(super) fn fair_open(samples: &[Sample]) -> Vec<DVec2> {
+    let extent = super::line::extent(samples);
+    let mut run = densified(samples, STEP * extent);
+    if let Some(last) = run.iter().rposition(|sample| sample.weight > 0.5) {
+        // What was put between the last sample and the first would close it.
+        run.truncate(last + 1);
+    }
+    // The ends weigh enough to stay.
+    let ends = [0, run.len() - 1];
+    ends.into_iter().for_each(|end| run[end].weight = 100.);
+    let corners = vec![run[0]];
+    let sides = Sides { runs: vec![run], corners, extent, noise: noise(samples) };
+    least_expected_error(&sides).concat()
+}
+
+/// Cuts off short loops where the contour crosses itself, such as sides prolonged past each other.
+fn untangle(contour: &mut Contour, longest: f64) {
+    for _ in 0..32 {
+        let Some((i, j, at)) = polygon::first_crossing(&contour.points) else { return };
+        let length: f64 = contour.points[i + 1..=j].windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        if length > longest {
+            return;
+        }
+        contour.points.splice(i + 1..=j, [at]);
+        let lost = j - i - 1;
+        contour.corners.iter_mut().for_each(|corner| match *corner {
+            c if c > j => *corner -= lost,
+            c if c > i => *corner = i + 1,
+            _ => {}
+        });
+        contour.corners.dedup();
+    }
+}
+
+fn densified(samples: &[Sample], step: f64) -> Vec<Sample> {
+    let mut dense = Vec::with_capacity(samples.len());
+    let step = step.max(1e-9);
+    for (&a, &b) in samples.iter().zip(samples.iter().cycle().skip(1)) {
+        dense.push(a);
+        let pieces = (a.at.distance(b.at) / step).ceil().clamp(1., 200.) as usize;
+        let weight = WEIGHT_ON_THE_WAY * a.weight.min(b.weight);
+        dense.extend((1..pieces).map(|i| {
+            let share = i as f64 / pieces as f64;
+            let smoothing = a.smoothing + (b.smoothing - a.smoothing) * share;
+            Sample { at: a.at.lerp(b.at, share), weight, smoothing }
+        }));
+    }
+    dense
+}
+
+/// Length along a closed line up to each sample, and all around.
+fn lengths(samples: &[Sample]) -> Vec<f64> {
+    let mut gone = 0.;
+    let mut lengths = vec![0.];
+    for (a, b) in samples.iter().zip(samples.iter().cycle().skip(1)) {
+        gone += a.at.distance(b.at).max(1e-9);
+        lengths.push(gone);
+    }
+    lengths
+}
+
+fn split(dense: &[Sample], found: &[usize], extent: f64, noise: f64) -> Sides {
+    let n = dense.len();
+    let mut runs = Vec::new();
+    for (k, &corner) in found.iter().enumerate() {
+        let next = if k + 1 < found.len() { found[k + 1] } else { found[0] + n };
+        let run: Vec<Sample> = (corner + 1..next).map(|i| dense[i % n]).collect();
+        runs.push(without_cut_tips(run, CUT_TIP * extent));
+    }
+    if found.is_empty() {
+        runs.push(dense.to_vec());
+    }
+    Sides { runs, corners: found.iter().map(|&i| dense[i]).collect(), extent, noise }
+}
+
+/// The run without what was put between its corners' samples and its first and last drawn ones: if the corner lies
+/// between two samples, the straight way between them cuts it off.
+fn without_cut_tips(run: Vec<Sample>, reach: f64) -> Vec<Sample> {
+    let drawn: Vec<usize> = (0..run.len()).filter(|&i| run[i].weight > 0.5).collect();
+    if drawn.len() < 3 {
+        return run;
+    }
+    let (first, last) = (drawn[0], drawn[drawn.len() - 1]);
+    let far = |a: usize, b: usize| run[a].at.distance(run[b].at);
+    let from = if far(0, first) < reach { first } else { 0 };
+    let to = if far(last, run.len() - 1) < reach { last } else { run.len() - 1 };
+    run[from..=to].to_vec()
+}
+
+fn least_expected_error(sides: &Sides) -> Vec<Vec<DVec2>> {
+    let closed = sides.corners.is_empty();
+    let around: f64 = sides.runs.iter().map(|run| super::line::length(run)).sum();
+    let weight: f64 = sides.runs.iter().flatten().map(|sample| sample.weight).sum();
+    let density = weight / around.max(1e-9);
+    let mut best: Option<(f64, Vec<Vec<DVec2>>)> = None;
+    for length in LENGTHS.map(|length| length * sides.extent) {
+        let smooth: Vec<Vec<DVec2>> =
+            sides.runs.iter().map(|run| smoothed(run, length, density, sides.extent, closed)).collect();
+        let misfit: f64 = sides
+            .runs
+            .iter()
+            .flatten()
+            .zip(smooth.iter().flatten())
+            .map(|(sample, place)| sample.weight * sample.at.distance_squared(*place))
+            .sum();
+        let freedom = around / (8f64.sqrt() * length) + 2. * sides.runs.len() as f64;
+        let error = misfit + 4. * sides.noise * sides.noise * freedom;
+        match &best {
+            Some((least, _)) if error > 1.5 * least => break,
+            Some((least, _)) if error >= *least => {}
+            _ => best = Some((error, smooth)),
+        }
+    }
+    best.map(|(_, smooth)| smooth).unwrap_or_default()
+}
+
+fn smoothed(run: &[Sample], length: f64, density: f64, extent: f64, closed: bool) -> Vec<DVec2> {
+    let n = run.len();
+    let pad = if closed { padding(run, 6. * length.max(0.02 * extent)) } else { 0 };
+    let padded: Vec<Sample> = (0..n + 2 * pad).map(|i| run[(i + n - pad) % n]).collect();
+    let mut times = Vec::with_capacity(padded.len());
+    let mut gone = 0.;
+    for (i, sample) in padded.iter().enumerate() {
+        gone += if i > 0 { sample.at.distance(padded[i - 1].at).max(1e-5 * extent) } else { 0. };
+        times.push(gone);
+    }
+    let places: Vec<DVec2> = padded.iter().map(|sample| sample.at).collect();
+    let weights: Vec<f64> = padded.iter().map(|sample| sample.weight.max(1e-4)).collect();
+    let bending: Vec<f64> = padded
+        .iter()
+        .map(|sample| {
+            let asked = LENGTH_OF_A_GESTURE * extent * sample.smoothing;
+            density * (length.powi(4) + asked.powi(4))
+        })
+        .collect();
+    let smooth = banded::smooth(&places, &times, &weights, &bending);
+    smooth[pad..pad + n].to_vec()
+}
+
+/// How many samples a closed line is repeated by at its ends, so that they do not show.
+fn padding(run: &[Sample], reach: f64) -> usize {
+    let mut gone = 0.;
+    let ahead = run.windows(2).take_while(|pair| {
+        gone += pair[0].at.distance(pair[1].at);
+        gone < reach
+    });
+    (ahead.count() + 4).min(run.len())
+}
+
+/// Sides prolonged to their corners.
+fn joined(sides: &Sides, smooth: &[Vec<DVec2>]) -> Contour {
+    let count = smooth.len();
+    let reach = (0.015 * sides.extent).max(4. * sides.noise);
+    let tips: Vec<DVec2> = (0..count)
+        .map(|k| tip(&smooth[(k + count - 1) % count], &smooth[k], sides.corners[k].at, reach, sides))
+        .collect();
+    let mut contour = Contour::default();
+    for (k, side) in smooth.iter().enumerate() {
+        let next = tips[(k + 1) % count];
+        let start = behind(side.iter().rev().copied(), reach);
+        let end = behind(side.iter().copied(), reach);
+        let begun = |p: &DVec2| start.is_none_or(|(_, back)| (*p - tips[k]).dot(-back) > 0.);
+        let ended = |p: &DVec2| end.is_some_and(|(_, on)| (*p - next).dot(on) >= 0.);
+        let first = side.iter().position(begun).unwrap_or(side.len());
+        let last = side.iter().rposition(|p| !ended(p)).map_or(0, |i| i + 1);
+        contour.corners.push(contour.points.len());
+        contour.points.push(tips[k]);
+        let inner = side.get(first..last).unwrap_or_default();
+        contour.points.extend(between(tips[k], inner, next, SHORTEST_STEP * sides.extent));
+    }
+    contour
+}
+
+/// Where the side before a corner and the side after it meet; the corner's sample if nowhere near it.
+fn tip(before: &[DVec2], after: &[DVec2], drawn: DVec2, reach: f64, sides: &Sides) -> DVec2 {
+    let meet = behind(before.iter().copied(), reach)
+        .zip(behind(after.iter().rev().copied(), reach))
+        .and_then(|(a, b)| meeting(a, b));
+    let gap = before.last().zip(after.first()).map_or(0., |(a, b)| a.distance(*b));
+    let near = (1.5 * gap).min(CUT_TIP * sides.extent).max(3. * sides.noise).max(0.01 * sides.extent);
+    meet.filter(|place| place.distance(drawn) < near).unwrap_or(drawn)
+}
+
+/// The last place of a side and the direction in which it ends, over about `reach`.
+fn behind(side: impl DoubleEndedIterator<Item = DVec2>, reach: f64) -> Option<(DVec2, DVec2)> {
+    let mut back = side.rev();
+    let last = back.next()?;
+    let far = back.enumerate().take_while(|(i, p)| *i == 0 || p.distance(last) <= reach).last();
+    let direction = (last - far?.1).try_normalize()?;
+    Some((last, direction))
+}
+
+fn between(start: DVec2, inner: &[DVec2], end: DVec2, step: f64) -> Vec<DVec2> {
+    let mut kept: Vec<DVec2> = Vec::new();
+    for &p in inner {
+        let last = kept.last().copied().unwrap_or(start);
+        if p.distance(last) >= step && p.distance(end) >= step {
+            kept.push(p);
+        }
+    }
+    kept
+}
+
+fn thinned(points: &[DVec2], step: f64) -> Vec<DVec2> {
+    let Some(&first) = points.first() else { return Vec::new() };
+    let mut kept = vec![first];
+    kept.extend(between(first, &points[1..], first, step));
+    kept
+}
+
+/// Turns a contour so that it runs counter-clockwise, or clockwise.
+pub(super) fn turned(mut contour: Contour, counter_clockwise: bool) -> Contour {
+    if (polygon::area(&contour.points) > 0.) != counter_clockwise {
+        let n = contour.points.len();
+        contour.points.reverse();
+        contour.corners = contour.corners.iter().rev().map(|&i| n - 1 - i).collect();
+    }
+    contour
+}

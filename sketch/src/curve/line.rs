@@ -1,0 +1,179 @@
+//! Strokes made fit for geometry: finite, without repetitions, bounded in number, and in a frame of size 1.
+
+use blobtree::{Drawing, DrawnStroke};
+use glam::DVec2;
+
+/// Samples that no stroke needs more of; what is above is averaged with its neighbours.
+const MOST_SAMPLES: usize = 2000;
+/// Samples of a whole drawing, shared fairly above that.
+const MOST_SAMPLES_IN_ALL: usize = 20_000;
+/// Nearer than this to the one before, a sample says nothing new (in drawing sizes).
+const REPETITION: f64 = 5e-4;
+/// A stroke that stays within this is a dot (in drawing sizes).
+const DOT: f64 = 0.004;
+/// Shakiness beyond this is taken for shape: no more than half of a shaky hand's 2 %.
+pub(super) const MOST_NOISE: f64 = 0.012;
+
+/// The times of the cubic come from the noisy samples too, which hides this part of the noise (measured).
+const TIMES_FROM_NOISE: f64 = 1.4;
+
+/// A place that the curve should pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    pub at: DVec2,
+    /// How much it counts: 1 for a place of the pen, nearly 0 in a gap.
+    pub weight: f64,
+    /// How much the user asked to smooth here, see [`blobtree::DrawnPoint::smoothing`].
+    pub smoothing: f64,
+}
+
+/// A cleaned stroke.
+#[derive(Clone, Debug)]
+pub(super) struct Line {
+    /// Its place in the drawing.
+    pub stroke: usize,
+    pub samples: Vec<Sample>,
+}
+
+/// From mm to a frame in which the longer side of the drawing is 1 and its middle 0, and back.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    middle: DVec2,
+    size: f64,
+}
+
+impl Frame {
+    /// None where there is no finite point.
+    pub fn of(drawing: &Drawing) -> Option<Self> {
+        let places = || finite_points(drawing.strokes.iter()).map(|(at, _)| at);
+        let least = places().reduce(DVec2::min)?;
+        let most = places().reduce(DVec2::max)?;
+        let size = (most - least).max_element();
+        Some(Self { middle: least.midpoint(most), size: if size > 0. { size } else { 1. } })
+    }
+
+    pub fn local(&self, at: DVec2) -> DVec2 {
+        (at - self.middle) / self.size
+    }
+
+    pub fn global(&self, at: DVec2) -> DVec2 {
+        self.middle + at * self.size
+    }
+
+    /// mm for one unit of the frame.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+}
+
+fn finite_points<'a>(strokes: impl Iterator<Item = &'a DrawnStroke>) -> impl Iterator<Item = (DVec2, f32)> {
+    strokes
+        .flat_map(|stroke| &stroke.points)
+        .filter(|point| point.at.is_finite())
+        .map(|point| (point.at.as_dvec2(), point.smoothing))
+}
+
+/// The strokes that are more than dots, in the drawing's frame.
+pub(super) fn clean(drawing: &Drawing, frame: &Frame) -> Vec<Line> {
+    let mut lines: Vec<Line> = drawing
+        .strokes
+        .iter()
+        .enumerate()
+        .map(|(stroke, drawn)| Line { stroke, samples: distinct_samples(drawn, frame) })
+        .filter(|line| line.samples.len() > 1 && extent(&line.samples) > DOT)
+        .collect();
+    let total: usize = lines.iter().map(|line| line.samples.len().min(MOST_SAMPLES)).sum();
+    let share = (MOST_SAMPLES_IN_ALL as f64 / total.max(1) as f64).min(1.);
+    for line in &mut lines {
+        let most = (MOST_SAMPLES as f64 * share) as usize;
+        let group = line.samples.len().div_ceil(most.max(8));
+        line.samples = averaged(&line.samples, group);
+        calm(&mut line.samples);
+    }
+    lines
+}
+
+fn distinct_samples(drawn: &DrawnStroke, frame: &Frame) -> Vec<Sample> {
+    let mut samples: Vec<Sample> = Vec::new();
+    for (at, smoothing) in finite_points(std::iter::once(drawn)) {
+        let at = frame.local(at);
+        if samples.last().is_some_and(|last| last.at.distance(at) < REPETITION) {
+            continue;
+        }
+        let smoothing = f64::from(if smoothing.is_finite() { smoothing.clamp(0., 100.) } else { 0. });
+        samples.push(Sample { at, weight: 1., smoothing });
+    }
+    samples
+}
+
+/// About every `group` of neighbours becomes their mean.
+fn averaged(samples: &[Sample], group: usize) -> Vec<Sample> {
+    if group < 2 || samples.len() < 3 {
+        return samples.to_vec();
+    }
+    let mean = |some: &[Sample]| Sample {
+        at: some.iter().map(|s| s.at).sum::<DVec2>() / some.len() as f64,
+        weight: 1.,
+        smoothing: some.iter().map(|s| s.smoothing).sum::<f64>() / some.len() as f64,
+    };
+    let (n, groups) = (samples.len(), samples.len() / group);
+    (0..groups).map(|k| mean(&samples[k * n / groups..(k + 1) * n / groups])).collect()
+}
+
+/// Averages neighbours until a step along the stroke is longer than its noise, so that it goes forward.
+fn calm(samples: &mut Vec<Sample>) {
+    while samples.len() > 24 {
+        let step = length(samples) / samples.len() as f64;
+        if noise(samples) < 0.3 * step {
+            break;
+        }
+        *samples = averaged(samples, 2);
+    }
+}
+
+/// Standard deviation of the samples from a smooth curve, in each coordinate.
+///
+/// Each sample is compared with the cubic through its four neighbours. The median makes corners harmless.
+pub(super) fn noise(samples: &[Sample]) -> f64 {
+    let mut squares: Vec<f64> = samples.windows(5).map(cubic_misfit).collect();
+    if squares.len() < 8 {
+        return 0.;
+    }
+    let middle = squares.len() / 2;
+    let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
+    // The median of a χ² with two degrees of freedom is 2 ln 2.
+    (TIMES_FROM_NOISE * (*median / std::f64::consts::LN_2 / 2.).sqrt()).min(MOST_NOISE)
+}
+
+/// Square of the middle sample's distance from the cubic through the others, over the variance that noise of
+/// deviation 1 would give it.
+fn cubic_misfit(five: &[Sample]) -> f64 {
+    let mut times = [0.; 5];
+    for i in 1..5 {
+        times[i] = times[i - 1] + five[i].at.distance(five[i - 1].at).sqrt();
+    }
+    let mut off = five[2].at;
+    let mut variance = 1.;
+    for i in [0, 1, 3, 4] {
+        let weight: f64 = [0, 1, 3, 4]
+            .iter()
+            .filter(|&&j| j != i)
+            .map(|&j| (times[2] - times[j]) / (times[i] - times[j]))
+            .product();
+        off -= weight * five[i].at;
+        variance += weight * weight;
+    }
+    let misfit = off.length_squared() / variance;
+    if misfit.is_finite() { misfit } else { 0. }
+}
+
+pub(super) fn length(samples: &[Sample]) -> f64 {
+    samples.windows(2).map(|pair| pair[0].at.distance(pair[1].at)).sum()
+}
+
+/// The longer side of the box around the samples.
+pub(super) fn extent(samples: &[Sample]) -> f64 {
+    let least = samples.iter().map(|s| s.at).reduce(DVec2::min);
+    let most = samples.iter().map(|s| s.at).reduce(DVec2::max);
+    least.zip(most).map_or(0., |(least, most)| (most - least).max_element())
+}

@@ -1,0 +1,32 @@
+//! The whole way from a drawing to the field that a sketched primitive sweeps.
+
+use crate::curve::{self, NoOutline};
+use crate::template;
+use blobtree::{Drawing, Template};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// Most places of the pen whose pressure the template hears of.
+const MOST_PRESSURES: usize = 4000;
+
+/// The template of a drawing: its outline found, smoothed and made a field.
+///
+/// - **Units:** mm; `falloff` is how far the influence reaches beyond the curve, by itself where none is given.
+/// - **Errors:** [`NoOutline`], in words for whoever drew it.
+/// - **Cost:** that of [`curve::fit`] and [`template::solve`].
+pub fn solve(drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, NoOutline> {
+    let curve = curve::fit(drawing)?;
+    let template = template::solve(&curve, falloff, &pressures(drawing, &curve.left_out));
+    template.map(Arc::new).map_err(|reason| NoOutline::NoField { reason: reason.to_string() })
+}
+
+/// How hard the pen pressed along the strokes of the outline.
+fn pressures(drawing: &Drawing, left_out: &[usize]) -> Vec<(DVec2, f32)> {
+    let strokes = drawing.strokes.iter().enumerate().filter(|(i, _)| !left_out.contains(i));
+    let points = strokes.flat_map(|(_, stroke)| &stroke.points);
+    let pressed = |point: &&blobtree::DrawnPoint| point.at.is_finite() && point.pressure.is_finite();
+    let all: Vec<(DVec2, f32)> =
+        points.filter(pressed).map(|point| (point.at.as_dvec2(), point.pressure.clamp(0., 1.))).collect();
+    let step = all.len().div_ceil(MOST_PRESSURES).max(1);
+    all.into_iter().step_by(step).collect()
+}
