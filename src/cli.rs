@@ -115,11 +115,15 @@ pub struct SketchArgs {
     #[arg(required = true, value_name = "DRAWING")]
     pub drawings: Vec<PathBuf>,
     /// The scene to write, a .trullo file, or a mesh: .stl, .obj, .ply or .3mf.
-    #[arg(short, long, value_name = "OUT", required_unless_present = "preview")]
+    #[arg(short, long, value_name = "OUT", required_unless_present_any = ["preview", "field"])]
     pub output: Option<PathBuf>,
     /// A picture to write, a .png file: the strokes in blue, the curves made of them in black.
     #[arg(long, value_name = "OUT.png")]
     pub preview: Option<PathBuf>,
+    /// A picture to write, a .png file: the first solid's field in the plane of its drawing, with a line at every
+    /// tenth and a bold one on the surface.
+    #[arg(long, value_name = "OUT.png")]
+    pub field: Option<PathBuf>,
     /// What becomes of the drawings; once for all, or once for each.
     #[arg(long = "as", value_name = "KIND", value_enum)]
     pub kinds: Vec<SolidKind>,

@@ -3,6 +3,7 @@
 mod cli;
 mod drawing;
 mod failure;
+mod field_picture;
 mod input;
 mod job;
 mod meshing;

@@ -17,8 +17,10 @@ fn circle(center: Vec2, radius: f32, falloff: f32) -> Template {
     let origin = center - 128.0 * pixel;
     let place = |i: usize| origin + pixel * Vec2::new((i % 257) as f32, (i / 257) as f32);
     let samples = (0..257 * 257).map(|i| place(i).distance(center) - radius).collect();
+    let distance = FieldImage::new(origin, pixel, [257, 257], samples).expect("a legal image");
     Template {
-        distance: FieldImage::new(origin, pixel, [257, 257], samples).expect("a legal image"),
+        bulge: distance.bulge(radius),
+        distance,
         pressure: None,
         falloff,
         depth: radius,

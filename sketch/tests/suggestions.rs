@@ -72,7 +72,8 @@ fn template(drawing: &Drawing) -> Template {
     let place = |i: usize| origin + pixel * Vec2::new((i % 129) as f32, (i / 129) as f32);
     let samples = (0..129 * 129).map(|i| signed_distance(&contours, place(i))).collect();
     let distance = FieldImage::new(origin, pixel, [129, 129], samples).expect("finite samples");
-    Template { distance, pressure: None, falloff, depth, contours, corners: Vec::new() }
+    let bulge = distance.bulge(depth);
+    Template { distance, bulge, pressure: None, falloff, depth, contours, corners: Vec::new() }
 }
 
 fn signed_distance(contours: &[Vec<Vec2>], p: Vec2) -> f32 {

@@ -6,9 +6,9 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::output::{Report, check_writable, counted};
 use crate::verbs::mesh;
-use crate::{input, meshing, preview};
+use crate::{field_picture, input, meshing, preview};
 use blobtree::build::{Build, blend, union};
-use blobtree::{Node, Scene};
+use blobtree::{Node, Scene, SketchPlane, Tree};
 use glam::Vec3;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -30,10 +30,10 @@ pub fn run(args: &SketchArgs, job: &mut Job) -> Result<Report, Failure> {
         report.put("preview", path.display().to_string());
         report.line(format!("{}: strokes and curves of {}", path.display(), counted(drawn.len(), "drawing")));
     }
-    let Some(output) = &args.output else {
+    if args.output.is_none() && args.field.is_none() {
         report.put("drawings", drawn.iter().map(|d| told(d, None)).collect::<Vec<_>>());
         return Ok(report);
-    };
+    }
     let mut solids = Vec::new();
     for (i, one) in drawn.iter().enumerate() {
         let kind = args.kinds.get(i).or(args.kinds.last()).copied().unwrap_or_default();
@@ -44,7 +44,18 @@ pub fn run(args: &SketchArgs, job: &mut Job) -> Result<Report, Failure> {
     }
     let parts = drawn.iter().zip(&solids).map(|(one, solid)| told(one, Some(solid)));
     report.put("drawings", parts.collect::<Vec<_>>());
-    write(args, output, solids, job, &mut report)?;
+    if let Some(path) = &args.field {
+        let place = args.places.first().copied().unwrap_or_else(|| in_a_row(args, 0));
+        let plane = SketchPlane { origin: place, ..SketchPlane::default() };
+        let tree = Tree::new(&solids[0].node.clone().into());
+        let picture = job.stage("field", |_| field_picture::png(path, &tree, &plane))?;
+        job.write(path, &picture)?;
+        report.put("field", path.display().to_string());
+        report.line(format!("{}: the field in the drawing's plane", path.display()));
+    }
+    if let Some(output) = &args.output {
+        write(args, output, solids, job, &mut report)?;
+    }
     Ok(report)
 }
 
@@ -61,11 +72,11 @@ fn check_request(args: &SketchArgs) -> Result<(), Failure> {
             "--as: {found} for {drawings}; give one, or one for each, in order"
         )));
     }
-    if let Some(preview) = &args.preview {
-        if !preview.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-            return Err(Failure::of(preview, "the name must end in .png, the only format for pictures"));
+    for picture in args.preview.iter().chain(&args.field) {
+        if !picture.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+            return Err(Failure::of(picture, "the name must end in .png, the only format for pictures"));
         }
-        check_writable(preview)?;
+        check_writable(picture)?;
     }
     if let Some(output) = &args.output {
         if !is_scene(output) {

@@ -2,6 +2,7 @@
 //!
 //! `cargo test --features shared --test shared`. Fails, and says so, when the data is not there.
 
+mod doodles;
 mod models;
 mod peer_scenes;
 mod slicer;

@@ -59,10 +59,6 @@ impl Section {
         }
     }
 
-    pub fn template(&self) -> &Template {
-        &self.template
-    }
-
     pub fn reach(&self) -> Rectangle {
         self.reach
     }
@@ -194,7 +190,7 @@ impl Ridge {
 }
 
 /// The directions of the curve on both sides of a corner, away from it.
-fn sides(template: &Template, corner: Vec2) -> Option<[Vec2; 2]> {
+pub(super) fn sides(template: &Template, corner: Vec2) -> Option<[Vec2; 2]> {
     let distance =
         |(contour, point): (usize, usize)| template.contours[contour][point].distance_squared(corner);
     let all =

@@ -69,7 +69,7 @@ fn slab(plane: &SketchPlane, area: &Rectangle, offset: f32, half: f32) -> Aabb {
 pub(super) fn inflation_reach(p: &Inflation) -> Aabb {
     let width = section::falloff(p.falloff, p.template.depth, &p.template).width();
     let thickest = inflated::half_thickness(p) * (1.0 + width / p.template.depth);
-    section::reach(&p.template, width).map_or(Aabb::EMPTY, |area| slab(&p.plane, &area, 0.0, thickest))
+    inflated::reach(&p.template, width).map_or(Aabb::EMPTY, |area| slab(&p.plane, &area, 0.0, thickest))
 }
 
 pub(super) fn linear_sweep_reach(p: &LinearSweep) -> Aabb {

@@ -50,8 +50,10 @@ pub fn polygon_template(drawing: &Drawing, falloff: Option<f32>, pixels: usize) 
         FieldImage::new(grid.origin, grid.pixel, grid.size, grid.places().map(f).collect())
             .map_err(|e| e.to_string())
     };
+    let distances = image(&|at| distance(&contours, at))?;
     Ok(Template {
-        distance: image(&|at| distance(&contours, at))?,
+        bulge: distances.bulge(depth),
+        distance: distances,
         pressure: if pressed { Some(image(&|at| nearest_pressure(drawing, at))?) } else { None },
         falloff: width,
         depth,

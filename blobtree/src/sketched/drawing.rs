@@ -45,40 +45,57 @@ impl Holes {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrawnStroke {
-    /// Where the pen was.
+    /// Where the pen was: `[x, y]` in mm, perhaps with the pressure (0 to 1, default 1) and the smoothing
+    /// (0 to 100, default 0).
+    #[schemars(with = "Vec<Vec<f32>>", inner(length(min = 2, max = 4)))]
     pub points: Vec<DrawnPoint>,
 }
 
-/// A place of the pen.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+/// A place of the pen. In files a list of 2 to 4 numbers, as there are thousands of them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f32>", into = "Vec<f32>")]
 pub struct DrawnPoint {
     /// Place in the sketch plane, mm.
-    #[schemars(with = "[f32; 2]")]
     pub at: Vec2,
     /// How hard the pen pressed, 0 to 1.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
-    #[schemars(range(min = 0.0, max = 1.0))]
     pub pressure: f32,
-    /// How far the curve may leave this point to be smooth: 0 as close as for any other, each step of 1 as much
-    /// as one circling gesture asks for.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 100.0))]
+    /// How far the curve may leave this point to be smooth, 0 to 100: 0 as close as for any other, each step of 1
+    /// as much as one circling gesture asks for.
     pub smoothing: f32,
 }
 
-fn one() -> f32 {
-    1.0
+impl DrawnPoint {
+    /// A point where the pen pressed fully, mm.
+    pub fn at(at: Vec2) -> Self {
+        Self { at, pressure: 1.0, smoothing: 0.0 }
+    }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-fn is_one(x: &f32) -> bool {
-    *x == 1.0
+impl From<DrawnPoint> for Vec<f32> {
+    fn from(DrawnPoint { at, pressure, smoothing }: DrawnPoint) -> Self {
+        let numbers = [at.x, at.y, pressure, smoothing];
+        let count = match (pressure, smoothing) {
+            (1.0, 0.0) => 2,
+            (_, 0.0) => 3,
+            _ => 4,
+        };
+        numbers[..count].to_vec()
+    }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-fn is_zero(x: &f32) -> bool {
-    *x == 0.0
+impl TryFrom<Vec<f32>> for DrawnPoint {
+    type Error = &'static str;
+
+    fn try_from(numbers: Vec<f32>) -> Result<Self, Self::Error> {
+        let (x, y, rest) = match numbers.as_slice() {
+            [x, y, rest @ ..] if rest.len() <= 2 => (*x, *y, rest),
+            _ => {
+                return Err("[x, y], [x, y, pressure] or [x, y, pressure, smoothing]");
+            }
+        };
+        let or = |i: usize, default: f32| rest.get(i).copied().unwrap_or(default);
+        Ok(Self { at: Vec2::new(x, y), pressure: or(0, 1.0), smoothing: or(1, 0.0) })
+    }
 }
 
 impl Drawing {
@@ -97,7 +114,7 @@ impl Drawing {
         let points: usize = self.strokes.iter().map(|stroke| stroke.points.len()).sum();
         one_of_length("drawing.strokes.points", points, 0, Self::MAX_POINTS)?;
         for point in self.strokes.iter().flat_map(|stroke| &stroke.points) {
-            place_in_plane("drawing.strokes.points.at", point.at)?;
+            place_in_plane("drawing.strokes.points", point.at)?;
             number("drawing.strokes.points.pressure", point.pressure, 0.0, 1.0, "")?;
             number("drawing.strokes.points.smoothing", point.smoothing, 0.0, 100.0, "")?;
         }

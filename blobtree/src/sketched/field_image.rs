@@ -146,13 +146,39 @@ impl FieldImage {
         Rectangle { min: self.origin + self.pixel * half, max: self.origin + self.pixel * (last - half) }
     }
 
+    /// The bulge of a template from its distance alone, of which this is the image: where it is e from the deepest
+    /// level set, `depth² − e²`.
+    ///
+    /// Right for a disc, and outside of any curve; of other shapes it makes roofs with ridges, where a solved bulge
+    /// is smooth.
+    #[must_use]
+    pub fn bulge(&self, depth: f32) -> Self {
+        let lower = |distance: &f32| {
+            let e = (depth + distance).clamp(0.0, 1e18);
+            (depth - e) * (depth + e)
+        };
+        let samples: Vec<f32> = self.samples.iter().map(lower).collect();
+        let ranges = Ranges::all(self.size, &samples);
+        Self { samples, ranges, ..self.clone() }
+    }
+
     /// A rectangle around all places with values below `level`, not looking beyond [`Self::rectangle`]; none
     /// if there are none. Right to some pixels.
     pub(crate) fn below(&self, level: f32) -> Option<Rectangle> {
+        self.around(|range| range.0 < level)
+    }
+
+    /// The same for values above `level`.
+    pub(crate) fn above(&self, level: f32) -> Option<Rectangle> {
+        self.around(|range| range.1 > level)
+    }
+
+    /// A rectangle around the blocks whose ranges are looked for.
+    fn around(&self, is_wanted: impl Fn((f32, f32)) -> bool) -> Option<Rectangle> {
         let blocks = &self.ranges[0];
         let mut found: Option<([usize; 2], [usize; 2])> = None;
         for (i, range) in blocks.ranges.iter().enumerate() {
-            if range.0 < level {
+            if is_wanted(*range) {
                 let at = [i % blocks.size[0], i / blocks.size[0]];
                 let (lo, hi) = found.unwrap_or((at, at));
                 found = Some((

@@ -14,14 +14,16 @@ use std::sync::Arc;
 
 /// A drawing blown up like a cushion: seen along the plane's normal, its outline is the drawn curve.
 ///
-/// Half the thickness is `½ · thickness · √((1 − s²)(1 − contrast · s²(2 − s²)))`, where s is 1 on the curve
-/// and 0 at the deepest place of the drawing: a drawn circle becomes a ball. With the flat profile, s⁴ stands
-/// for the first s², and the root is a fourth one.
+/// Half the thickness is `½ · thickness · √((1 − s²)(1 − contrast · s²(2 − s²)))`. There `1 − s²` is the
+/// template's bulge as a share of its highest: the solution of `∇²h = −4` with 0 on the curve. A drawn circle
+/// becomes a ball and a strip a round bar; nothing has ridges but where the curve has sharp corners. A part that
+/// is narrower than the drawing's deepest is up to 1.41 times as thick as it is wide, if it is long. With the flat
+/// profile, s⁴ stands for the first s², and the root is a fourth one.
 ///
 /// **Source:** Schmidt & Wyvill 2011, §11.3.3. **Departs:** the paper multiplies the template's field by a
-/// falloff along the normal; here both distances are put together before the falloff. The surface is nearly
-/// the same with the paper's own widths (2.5 % rounder); but it is a true ellipsoid over a circle, and does not
-/// change with the falloff.
+/// falloff along the normal. Its height follows the distance from the curve, which has ridges halfway between
+/// sides of the curve; and its surface depends on the falloff. The surface here is a true ellipsoid over a circle,
+/// smooth, and does not change with the falloff.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Inflation {
@@ -32,8 +34,7 @@ pub struct Inflation {
     /// Where the drawing lies.
     #[serde(default, skip_serializing_if = "SketchPlane::is_default")]
     pub plane: SketchPlane,
-    /// From surface to surface at the deepest place of the drawing, mm. Default: twice the drawing's depth,
-    /// which is round.
+    /// From surface to surface at the highest place, mm. Default: twice the drawing's depth, which is round.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.001, max = 100_000.0))]
     pub thickness: Option<f32>,

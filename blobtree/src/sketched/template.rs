@@ -9,6 +9,10 @@ pub struct Template {
     /// The smoothed signed distance to the drawn curve, mm, below 0 inside. Right as far as `falloff` outside;
     /// from there on, and at the image's border, at least `falloff`.
     pub distance: FieldImage,
+    /// How high an inflation stands over a place, squared, mm²: 0 on the curve, the square of `depth` where it is
+    /// highest, and outside, to where the distance is `falloff`, the square of `depth` less that of `depth` plus
+    /// the distance, or nearly so close to the curve; beyond and at the image's border, no more.
+    pub bulge: FieldImage,
     /// How hard the pen pressed near a place, 0 to 1; none where it always pressed alike.
     pub pressure: Option<FieldImage>,
     /// How far the influence reaches beyond the curve, mm.
@@ -26,7 +30,8 @@ impl Default for Template {
     fn default() -> Self {
         let far = vec![1.0; 9];
         let distance = FieldImage::new(Vec2::ZERO, 1.0, [3, 3], far).expect("nine finite samples");
+        let bulge = distance.bulge(1.0);
         let (contours, corners) = (Vec::new(), Vec::new());
-        Self { distance, pressure: None, falloff: 1.0, depth: 1.0, contours, corners }
+        Self { distance, bulge, pressure: None, falloff: 1.0, depth: 1.0, contours, corners }
     }
 }

@@ -1,7 +1,7 @@
 //! Lines joined by their ends into chains, and the groups of chains that touch.
 
 use super::line::{Line, Sample, extent, length};
-use super::polygon::{area, crossing};
+use super::polygon::{area, bounds, crossing};
 use glam::DVec2;
 
 /// Ends nearer than this belong together, in drawing sizes: what people leave open between strokes.
@@ -14,6 +14,9 @@ const CLOSE_SHARE: f64 = 0.15;
 const LEAN: f64 = 0.05;
 /// Least area of a loop, over length times extent: a line that goes back the way it came has less.
 const LEAST_AREA: f64 = 0.004;
+/// A loop smaller than this part of its line is not the line with its tails cut off: the tail is the string of a
+/// balloon.
+const MOST_OF_IT: f64 = 0.5;
 /// What counts as no weight where there is nothing drawn.
 const WEIGHT_OF_A_GAP: f64 = 1e-3;
 
@@ -63,7 +66,12 @@ fn gap_samples(from: Sample, to: Sample) -> Vec<Sample> {
     let pieces = (from.at.distance(to.at) / 0.01).ceil() as usize;
     let on_the_way = |i| {
         let at = from.at.lerp(to.at, i as f64 / pieces as f64);
-        Sample { at, weight: WEIGHT_OF_A_GAP, smoothing: from.smoothing.max(to.smoothing) }
+        Sample {
+            at,
+            weight: WEIGHT_OF_A_GAP,
+            smoothing: from.smoothing.max(to.smoothing),
+            sparse: from.sparse,
+        }
     };
     (1..pieces).map(on_the_way).collect()
 }
@@ -132,7 +140,8 @@ fn without_overshoot(samples: &[Sample]) -> Option<Vec<Sample>> {
     let mut kept = vec![Sample { at, ..samples[i] }];
     kept.extend(samples[i + 1..=j].iter().filter(|sample| sample.at.distance(at) > 1e-6));
     let places: Vec<DVec2> = kept.iter().map(|sample| sample.at).collect();
-    (area(&places).abs() > LEAST_AREA * length(&kept) * extent(&kept)).then_some(kept)
+    let has_room = area(&places).abs() > LEAST_AREA * length(&kept) * extent(&kept);
+    (has_room && extent(&kept) > MOST_OF_IT * extent(samples)).then_some(kept)
 }
 
 /// An end of a chain: which one, and whether it is the last sample.
@@ -212,14 +221,20 @@ fn walks(open: &[Chain], partner: &[[Option<End>; 2]]) -> Vec<Chain> {
 /// An end leans on its own chain only further along than a few times the bridge.
 pub(super) fn bridges(chains: &[Chain]) -> Vec<(usize, usize, [DVec2; 2])> {
     let mut found = Vec::new();
+    let paths: Vec<Vec<DVec2>> = chains.iter().map(Chain::path).collect();
+    let boxes: Vec<(DVec2, DVec2)> = paths.iter().map(|path| bounds(path)).collect();
     for (i, chain) in chains.iter().enumerate().filter(|(_, chain)| !chain.closed) {
-        let mut backward = chain.path();
+        let mut backward = paths[i].clone();
         backward.reverse();
-        for path in [chain.path(), backward] {
+        for path in [&paths[i], &backward] {
             let (end, reach) = (path[0], LEAN.min(0.5 * chain.extent()));
-            let own = nearest(end, far_along(&path, 4. * reach)).map(|at| (i, at));
-            let others = chains.iter().enumerate().filter(|&(j, _)| j != i);
-            let other = others.filter_map(|(j, other)| Some((j, nearest(end, &other.path())?)));
+            let own = nearest(end, far_along(path, 4. * reach)).map(|at| (i, at));
+            let in_reach = |j: &usize| {
+                let (least, most) = boxes[*j];
+                *j != i && end.clamp(least, most).distance(end) <= reach
+            };
+            let others = (0..chains.len()).filter(in_reach);
+            let other = others.filter_map(|j| Some((j, nearest(end, &paths[j])?)));
             let nearest = own
                 .into_iter()
                 .chain(other)

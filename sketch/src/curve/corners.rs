@@ -6,12 +6,18 @@ use glam::DVec2;
 /// How far the directions of the two sides are taken, in extents of the contour, where nothing shakes. Shorter,
 /// and single samples of a simplified line are corners; longer, and the tips of slim ellipses are.
 const REACH: f64 = 0.025;
+/// The same where only the places are kept at which the line bends: two or three of them make a blunt tip.
+const SPARSE_REACH: f64 = 0.04;
 /// The least turn of a corner, radians: a heptagon's corners are, a circle of nine samples has none.
 const LEAST_TURN: f64 = 0.7;
 /// Fillets below this radius are corners, in extents; those of a rounded square of 0.08 are not.
 const LARGEST_FILLET: f64 = 0.025;
 /// A place asked to be sharp or round concerns corners this near, in extents.
 const NEAR: f64 = 0.05;
+
+/// Where only the places are kept at which a line bends, it goes straight between them to this, in drawing sizes:
+/// programs that thin lines out leave 2 of 255 pixels. An arc through a corner would leave its edges further.
+const STRAIGHT: f64 = 0.01;
 
 /// Places of the user's wishes.
 #[derive(Clone, Debug, Default)]
@@ -27,6 +33,8 @@ pub(super) struct Closed<'a> {
     pub lengths: &'a [f64],
     pub extent: f64,
     pub noise: f64,
+    /// Whether only places were kept at which the line bends.
+    pub sparse: bool,
 }
 
 /// A straight line fitted to a side.
@@ -86,9 +94,25 @@ impl Closed<'_> {
         Some(Side { middle: place / weight, direction })
     }
 
+    /// Positive to the left.
     fn turn(&self, i: usize, reach: f64) -> f64 {
         let sides = self.side(i, false, 0., reach).zip(self.side(i, true, 0., reach));
-        sides.map_or(0., |(before, after)| before.direction.angle_to(after.direction).abs())
+        sides.map_or(0., |(before, after)| before.direction.angle_to(after.direction))
+    }
+
+    /// Whether the places around sample `i` may be all that is left of an arc: one that turns as they do stays
+    /// near the edges between them.
+    fn may_be_an_arc(&self, i: usize, reach: f64) -> bool {
+        let turn = self.turn(i, reach);
+        [false, true].into_iter().all(|forward| {
+            let mut ahead = self.stretch(i, forward, reach, 0.5 * self.around());
+            let Some((length, next)) = ahead.find(|&(_, j)| self.samples[j].weight > 0.5) else {
+                return true;
+            };
+            let other = self.turn(next, reach);
+            let turned = if other * turn > 0. { 0.5 * (turn + other) } else { 0.5 * turn };
+            0.5 * length * (turned / 4.).tan().abs() < STRAIGHT
+        })
     }
 
     /// Where the sides would meet, if they meet in a corner rather than in a fillet.
@@ -115,13 +139,15 @@ pub(super) fn meeting(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> Option<DVec2> {
 /// A corner is where fitted directions of the two sides differ much over a short stretch, and where the sides,
 /// prolonged, meet on the line rather than beyond it.
 pub(super) fn find(line: &Closed, wishes: &Wishes) -> Vec<usize> {
-    let reach = (REACH * line.extent).max(10. * line.noise).min(line.around() / 8.);
+    let reach = if line.sparse { SPARSE_REACH } else { REACH };
+    let reach = (reach * line.extent).max(10. * line.noise).min(line.around() / 8.);
     let in_reach = (reach / line.spacing()).max(1.);
     let shaky = 2.5 * line.noise / reach * (12. / in_reach).sqrt();
     let mut candidates: Vec<Candidate> = (0..line.samples.len())
         .filter(|&i| line.samples[i].weight > 0.5 && line.samples[i].smoothing < 0.5)
-        .map(|sample| Candidate { sample, turn: line.turn(sample, reach) })
+        .map(|sample| Candidate { sample, turn: line.turn(sample, reach).abs() })
         .filter(|candidate| candidate.turn > LEAST_TURN + shaky)
+        .filter(|candidate| !(line.sparse && line.may_be_an_arc(candidate.sample, reach)))
         .collect();
     candidates.sort_by(|a, b| b.turn.total_cmp(&a.turn).then(a.sample.cmp(&b.sample)));
     let mut taken: Vec<usize> = Vec::new();

@@ -3,7 +3,7 @@
 use super::Contour;
 use super::banded;
 use super::corners::{self, Closed, Wishes, meeting};
-use super::line::{Sample, noise};
+use super::line::{Sample, are_sparse, noise};
 use super::polygon;
 use glam::DVec2;
 
@@ -19,6 +19,8 @@ const LENGTHS: [f64; 10] = [0.003, 0.005, 0.008, 0.012, 0.018, 0.027, 0.04, 0.05
 const CUT_TIP: f64 = 0.05;
 /// Loops up to this long, in extents, that smoothing leaves are cut off.
 const LEAST_LOOP: f64 = 0.25;
+/// How uncertain the places of a line are of which only those are kept where it bends, in drawing sizes.
+const THINNED_OUT: f64 = 0.002;
 /// Smoothing length that one circling gesture asks for, in extents.
 const LENGTH_OF_A_GESTURE: f64 = 0.02;
 
@@ -30,6 +32,8 @@ struct Sides {
     corners: Vec<Sample>,
     extent: f64,
     noise: f64,
+    /// Whether only places were kept at which the line bends: tips among them.
+    sparse: bool,
 }
 
 /// The smooth curve that the samples of a closed line mean; none where nothing is left of it.
@@ -44,9 +48,10 @@ pub(super) fn fair(samples: &[Sample], wishes: &Wishes) -> Option<Contour> {
     let noise = noise(samples);
     let dense = densified(samples, STEP * extent);
     let lengths = lengths(&dense);
-    let line = Closed { samples: &dense, lengths: &lengths, extent, noise };
+    let sparse = are_sparse(samples);
+    let line = Closed { samples: &dense, lengths: &lengths, extent, noise, sparse };
     let found = corners::find(&line, wishes);
-    let sides = split(&dense, &found, extent, noise);
+    let sides = split(&line, &found);
     let smooth = least_expected_error(&sides);
     let mut contour = if sides.corners.is_empty() {
         Contour { points: thinned(&smooth[0], SHORTEST_STEP * extent), corners: Vec::new() }
@@ -69,7 +74,9 @@ pub(super) fn fair_open(samples: &[Sample]) -> Vec<DVec2> {
     let ends = [0, run.len() - 1];
     ends.into_iter().for_each(|end| run[end].weight = 100.);
     let corners = vec![run[0]];
-    let sides = Sides { runs: vec![run], corners, extent, noise: noise(samples) };
+    let sparse = are_sparse(samples);
+    let noise = if sparse { THINNED_OUT } else { noise(samples) };
+    let sides = Sides { runs: vec![run], corners, extent, noise, sparse };
     least_expected_error(&sides).concat()
 }
 
@@ -102,7 +109,7 @@ fn densified(samples: &[Sample], step: f64) -> Vec<Sample> {
         dense.extend((1..pieces).map(|i| {
             let share = i as f64 / pieces as f64;
             let smoothing = a.smoothing + (b.smoothing - a.smoothing) * share;
-            Sample { at: a.at.lerp(b.at, share), weight, smoothing }
+            Sample { at: a.at.lerp(b.at, share), weight, smoothing, sparse: a.sparse }
         }));
     }
     dense
@@ -119,7 +126,9 @@ fn lengths(samples: &[Sample]) -> Vec<f64> {
     lengths
 }
 
-fn split(dense: &[Sample], found: &[usize], extent: f64, noise: f64) -> Sides {
+fn split(line: &Closed, found: &[usize]) -> Sides {
+    let &Closed { samples: dense, extent, sparse, .. } = line;
+    let noise = if sparse { line.noise.max(THINNED_OUT) } else { line.noise };
     let n = dense.len();
     let mut runs = Vec::new();
     for (k, &corner) in found.iter().enumerate() {
@@ -130,7 +139,7 @@ fn split(dense: &[Sample], found: &[usize], extent: f64, noise: f64) -> Sides {
     if found.is_empty() {
         runs.push(dense.to_vec());
     }
-    Sides { runs, corners: found.iter().map(|&i| dense[i]).collect(), extent, noise }
+    Sides { runs, corners: found.iter().map(|&i| dense[i]).collect(), extent, noise, sparse }
 }
 
 /// The run without what was put between its corners' samples and its first and last drawn ones: if the corner lies
@@ -237,7 +246,8 @@ fn tip(before: &[DVec2], after: &[DVec2], drawn: DVec2, reach: f64, sides: &Side
         .zip(behind(after.iter().rev().copied(), reach))
         .and_then(|(a, b)| meeting(a, b));
     let gap = before.last().zip(after.first()).map_or(0., |(a, b)| a.distance(*b));
-    let near = (1.5 * gap).min(CUT_TIP * sides.extent).max(3. * sides.noise).max(0.01 * sides.extent);
+    let cut_off = if sides.sparse { 0. } else { (1.5 * gap).min(CUT_TIP * sides.extent) };
+    let near = cut_off.max(3. * sides.noise).max(0.01 * sides.extent);
     meet.filter(|place| place.distance(drawn) < near).unwrap_or(drawn)
 }
 

@@ -14,6 +14,10 @@ const DOT: f64 = 0.004;
 /// Shakiness beyond this is taken for shape: no more than half of a shaky hand's 2 %.
 pub(super) const MOST_NOISE: f64 = 0.012;
 
+/// Strokes whose samples are further apart than this on average, in drawing sizes, were thinned out to the places
+/// where they bend, as files of drawings often are. A hand that shakes by 2 % of the drawing makes steps of 0.025.
+const SPARSE: f64 = 0.03;
+
 /// The times of the cubic come from the noisy samples too, which hides this part of the noise (measured).
 const TIMES_FROM_NOISE: f64 = 1.4;
 
@@ -25,6 +29,8 @@ pub(super) struct Sample {
     pub weight: f64,
     /// How much the user asked to smooth here, see [`blobtree::DrawnPoint::smoothing`].
     pub smoothing: f64,
+    /// Whether its stroke was thinned out to the places where it bends.
+    pub sparse: bool,
 }
 
 /// A cleaned stroke.
@@ -101,9 +107,18 @@ fn distinct_samples(drawn: &DrawnStroke, frame: &Frame) -> Vec<Sample> {
             continue;
         }
         let smoothing = f64::from(if smoothing.is_finite() { smoothing.clamp(0., 100.) } else { 0. });
-        samples.push(Sample { at, weight: 1., smoothing });
+        samples.push(Sample { at, weight: 1., smoothing, sparse: false });
     }
+    let step = length(&samples) / samples.len() as f64;
+    let sparse = step > SPARSE;
+    samples.iter_mut().for_each(|sample| sample.sparse = sparse);
     samples
+}
+
+/// Whether most of the drawn samples are of strokes that were thinned out.
+pub(super) fn are_sparse(samples: &[Sample]) -> bool {
+    let drawn = || samples.iter().filter(|sample| sample.weight > 0.5);
+    2 * drawn().filter(|sample| sample.sparse).count() > drawn().count()
 }
 
 /// About every `group` of neighbours becomes their mean.
@@ -115,6 +130,7 @@ fn averaged(samples: &[Sample], group: usize) -> Vec<Sample> {
         at: some.iter().map(|s| s.at).sum::<DVec2>() / some.len() as f64,
         weight: 1.,
         smoothing: some.iter().map(|s| s.smoothing).sum::<f64>() / some.len() as f64,
+        sparse: some[0].sparse,
     };
     let (n, groups) = (samples.len(), samples.len() / group);
     (0..groups).map(|k| mean(&samples[k * n / groups..(k + 1) * n / groups])).collect()
@@ -133,10 +149,11 @@ fn calm(samples: &mut Vec<Sample>) {
 
 /// Standard deviation of the samples from a smooth curve, in each coordinate.
 ///
-/// Each sample is compared with the cubic through its four neighbours. The median makes corners harmless.
+/// Each sample is compared with the cubic through its four neighbours. The median makes corners harmless. Of lines
+/// that were thinned out a cubic says nothing, and the answer is 0.
 pub(super) fn noise(samples: &[Sample]) -> f64 {
     let mut squares: Vec<f64> = samples.windows(5).map(cubic_misfit).collect();
-    if squares.len() < 8 {
+    if squares.len() < 8 || are_sparse(samples) {
         return 0.;
     }
     let middle = squares.len() / 2;

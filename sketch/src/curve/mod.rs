@@ -7,6 +7,7 @@
 
 mod banded;
 mod chains;
+mod closing;
 mod corners;
 mod fair;
 mod groups;

@@ -1,6 +1,7 @@
 //! Which lines of a drawing are outlines, which are holes, and which are left out.
 
 use super::chains::{self, Chain};
+use super::closing;
 use super::corners::Wishes;
 use super::fair::{fair, turned};
 use super::groups::groups;
@@ -27,6 +28,8 @@ const CLOSED_AREA: f64 = 0.04;
 /// A line that goes around this share of the square of its extent is closed, however far its ends are apart up to
 /// a share of the extent: people leave the bottom of a hand or of a bulb away.
 const FAR_CLOSE: [(f64, f64); 2] = [(0.6, 0.08), (1., 0.15)];
+/// Outlines that together are smaller than this, in drawing sizes, are details of something that does not close.
+const LEAST_SHARE: f64 = 0.2;
 /// A line longer than this many of its extents is a scribble, not an outline.
 const LONGEST_LOOP: f64 = 40.;
 /// How far a filled group may exceed its one closed line before the line is not the whole outline.
@@ -61,8 +64,9 @@ pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -
             .then(a.stroke.cmp(&b.stroke))
     });
     lines.truncate(MOST_LINES);
-    let chains = chains::chains(lines);
-    let bridges = chains::bridges(&chains);
+    let mut chains = chains::chains(lines);
+    let mut bridges = chains::bridges(&chains);
+    closing::close(&mut chains, &mut bridges);
     let mut groups: Vec<Group> = groups(&chains, &bridges)
         .into_iter()
         .map(|members| Group::of(&members, &chains, &bridges))
@@ -78,7 +82,15 @@ pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -
         all.used.extend(outline.used);
     }
     all.contours = nested(apart(all.contours), fill_holes);
-    if all.contours.is_empty() { Err(reason(&chains)) } else { Ok(all) }
+    let is_detail = joint_extent(std::slice::from_ref(&all)) < LEAST_SHARE;
+    if is_detail { Err(reason(&chains)) } else { Ok(all) }
+}
+
+/// The extent of all contours together.
+fn joint_extent(outlines: &[Outline]) -> f64 {
+    let contours = outlines.iter().flat_map(|outline| &outline.contours);
+    let places: Vec<DVec2> = contours.flat_map(|contour| &contour.points).copied().collect();
+    polygon::extent(&places)
 }
 
 /// Lengths in the reason are in the frame of the lines.
@@ -132,7 +144,7 @@ impl<'a> Group<'a> {
             return None;
         }
         let contour = fair(&chain.samples, wishes)?;
-        (!polygon::cross(std::iter::once(&contour.points[..]))).then_some((chain, contour))
+        is_simple(&contour).then_some((chain, contour))
     }
 
     fn middle(&self) -> DVec2 {
@@ -161,23 +173,19 @@ impl<'a> Group<'a> {
     fn filled(&self, wishes: &Wishes, pens: &[f64]) -> Outline {
         let mut outline = Outline::default();
         for silhouette in silhouettes(&self.chains, &self.bridges, pens) {
-            let Some(contour) = fair(&silhouette.samples, wishes) else { continue };
-            let contour = simple(contour, &silhouette.samples.iter().map(|s| s.at).collect::<Vec<_>>());
-            outline.contours.extend(contour);
+            let readings = [&silhouette.samples, &silhouette.plain];
+            let fair = readings.into_iter().find_map(|samples| fair(samples, wishes).filter(is_simple));
+            let filled = || Contour { points: silhouette.filled, corners: Vec::new() };
+            outline.contours.push(fair.unwrap_or_else(filled));
             outline.used.extend(silhouette.strokes);
         }
         outline
     }
 }
 
-/// The contour, or what it was made from where smoothing made it cross itself.
-fn simple(contour: Contour, from: &[DVec2]) -> Option<Contour> {
-    let crosses = |points: &[DVec2]| polygon::cross(std::iter::once(points));
-    if !crosses(&contour.points) {
-        return Some(contour);
-    }
-    let plain = Contour { points: from.to_vec(), corners: Vec::new() };
-    (!crosses(&plain.points)).then_some(plain)
+/// Whether smoothing left the contour without a crossing.
+fn is_simple(contour: &Contour) -> bool {
+    !polygon::cross(std::iter::once(&contour.points[..]))
 }
 
 /// Closes large groups that enclose next to nothing and do not lie in what others enclose.
@@ -202,7 +210,7 @@ fn close_the_open(groups: &[Group], found: &mut [Outline], wishes: &Wishes) {
         }
     }
     let total: f64 = found.iter().map(Outline::area).sum();
-    if total < CLOSED_AREA && !groups.is_empty() {
+    if total < CLOSED_AREA && joint_extent(found) < WORTH_CLOSING && !groups.is_empty() {
         let all = Group {
             chains: groups.iter().flat_map(|group| group.chains.iter().copied()).collect(),
             bridges: groups.iter().flat_map(|group| group.bridges.iter().copied()).collect(),

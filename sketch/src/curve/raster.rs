@@ -2,6 +2,9 @@
 
 use glam::{DVec2, IVec2};
 
+/// More steps than any raster has.
+const FAR: f64 = 1e6;
+
 /// Square cells over a box.
 pub(super) struct Raster {
     pub origin: DVec2,
@@ -43,24 +46,35 @@ impl Raster {
     }
 
     /// Which cells can be reached from the border over cells that are open, by steps along x and y.
+    ///
+    /// **Cost:** linear; whole runs along x are taken at once.
     pub fn outside(&self, open: impl Fn(usize) -> bool) -> Vec<bool> {
+        let width = self.width;
         let mut reached = vec![false; self.count()];
-        let mut waiting: Vec<usize> = (0..self.count())
-            .filter(|i| {
-                let (x, y) = (i % self.width, i / self.width);
-                x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
-            })
-            .collect();
+        let rows = [0, self.height - 1].into_iter().flat_map(|y| (0..width).map(move |x| y * width + x));
+        let columns = (0..self.height).flat_map(|y| [y * width, (y + 1) * width - 1]);
+        let mut waiting: Vec<usize> = rows.chain(columns).collect();
         while let Some(i) = waiting.pop() {
             if reached[i] || !open(i) {
                 continue;
             }
-            reached[i] = true;
-            let (x, y) = (i % self.width, i / self.width);
-            waiting.extend((x > 0).then(|| i - 1));
-            waiting.extend((x + 1 < self.width).then(|| i + 1));
-            waiting.extend((y > 0).then(|| i - self.width));
-            waiting.extend((y + 1 < self.height).then(|| i + self.width));
+            let row = i - i % width;
+            let free = |k: &usize| open(*k) && !reached[*k];
+            let first = (row..i).rev().take_while(free).last().unwrap_or(i);
+            let last = (i + 1..row + width).take_while(free).last().unwrap_or(i);
+            reached[first..=last].fill(true);
+            for beside in [row.checked_sub(width), Some(row + width).filter(|r| *r < self.count())] {
+                let Some(beside) = beside else { continue };
+                let run = (beside + first - row)..=(beside + last - row);
+                let mut before = false;
+                for k in run {
+                    let free = open(k) && !reached[k];
+                    if free && !before {
+                        waiting.push(k);
+                    }
+                    before = free;
+                }
+            }
         }
         reached
     }
@@ -69,19 +83,24 @@ impl Raster {
     ///
     /// **Source:** Felzenszwalb & Huttenlocher 2012, lower envelopes of parabolas, along y and then along x.
     pub fn distances(&self, marked: impl Fn(usize) -> bool) -> Vec<f64> {
-        let mut squares: Vec<f64> = (0..self.count()).map(|i| if marked(i) { 0. } else { 1e12 }).collect();
-        let mut lane = Vec::new();
-        for x in 0..self.width {
-            lane.clear();
-            lane.extend((0..self.height).map(|y| squares[y * self.width + x]));
-            for (y, value) in envelope(&lane).into_iter().enumerate() {
-                squares[y * self.width + x] = value;
+        let mut squares: Vec<f64> = (0..self.count()).map(|i| if marked(i) { 0. } else { FAR }).collect();
+        // Along y first: between marked cells of a column the nearest is found by going up and down.
+        for row in 1..self.height {
+            let (before, here) = squares.split_at_mut(row * self.width);
+            let before = &before[(row - 1) * self.width..];
+            for (value, above) in here[..self.width].iter_mut().zip(before) {
+                *value = value.min(above + 1.);
             }
         }
-        for row in squares.chunks_mut(self.width) {
-            let lowered = envelope(row);
-            row.copy_from_slice(&lowered);
+        for row in (0..self.height - 1).rev() {
+            let (here, after) = squares.split_at_mut((row + 1) * self.width);
+            for (value, below) in here[row * self.width..].iter_mut().zip(&after[..self.width]) {
+                *value = value.min(below + 1.);
+            }
         }
+        squares.iter_mut().for_each(|steps| *steps *= *steps);
+        let mut envelope = Envelope::default();
+        squares.chunks_mut(self.width).for_each(|row| envelope.lower(row));
         squares.into_iter().map(|square| square.sqrt() * self.cell).collect()
     }
 
@@ -144,31 +163,44 @@ impl Raster {
     }
 }
 
-/// For each i the least of value[j] + (i − j)².
-fn envelope(values: &[f64]) -> Vec<f64> {
-    let meet = |a: usize, b: usize| {
-        let (fa, fb) = (a as f64, b as f64);
-        ((values[b] + fb * fb) - (values[a] + fa * fa)) / (2. * (fb - fa))
-    };
-    let mut hull: Vec<usize> = Vec::with_capacity(values.len());
-    for i in 0..values.len() {
-        while hull.len() > 1
-            && meet(hull[hull.len() - 1], i) <= meet(hull[hull.len() - 2], hull[hull.len() - 1])
-        {
-            hull.pop();
-        }
-        hull.push(i);
-    }
-    let mut k = 0;
-    (0..values.len())
-        .map(|i| {
-            while k + 1 < hull.len() && meet(hull[k], hull[k + 1]) <= i as f64 {
-                k += 1;
+/// The lower envelope of parabolas; keeps its memory from lane to lane.
+#[derive(Default)]
+struct Envelope {
+    /// Which parabola is the lowest, the value at its middle, and up to where.
+    hull: Vec<(f64, f64, f64)>,
+}
+
+impl Envelope {
+    /// Puts for each i the least of values[j] + (i − j)².
+    fn lower(&mut self, values: &mut [f64]) {
+        self.hull.clear();
+        for (i, &value) in values.iter().enumerate() {
+            if value >= FAR * FAR {
+                continue;
             }
-            let off = i as f64 - hull[k] as f64;
-            values[hull[k]] + off * off
-        })
-        .collect()
+            let at = i as f64;
+            let mut from = f64::NEG_INFINITY;
+            while let Some(&(last, lowest, begins)) = self.hull.last() {
+                from = ((value + at * at) - (lowest + last * last)) / (2. * (at - last));
+                if from > begins {
+                    break;
+                }
+                self.hull.pop();
+                from = f64::NEG_INFINITY;
+            }
+            self.hull.push((at, value, from));
+        }
+        let Some(&first) = self.hull.first() else { return };
+        let (mut k, mut current) = (0, first);
+        for (i, value) in values.iter_mut().enumerate() {
+            let at = i as f64;
+            while self.hull.get(k + 1).is_some_and(|next| next.2 <= at) {
+                k += 1;
+                current = self.hull[k];
+            }
+            *value = current.1 + (at - current.0).powi(2);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! From the spline and the true distance to the samples of the field image.
 
 use super::constraints::{Fitted, ridges_at};
+use super::exact::Exact;
 use super::levels::Levels;
-use crate::thin_plate::{CornerRidge, Grid};
+use crate::thin_plate::CornerRidge;
 use rayon::prelude::*;
 
 /// How far the spline may leave the true distance, as a share of the drawing's size, before it is drawn back.
@@ -26,9 +27,15 @@ const AT_CORNERS: [f64; 2] = [3.0, 9.0];
 ///
 /// There it is three quarters of a pixel more, since reading the image rounds the ridges of the distance: so the
 /// read distance is never below the falloff beyond it.
-pub(super) fn samples(fitted: &Fitted, exact: &[f64], grid: &Grid, levels: &Levels, size: f64) -> Vec<f32> {
-    let mut samples = fitted.spline.sample_grid(grid);
+pub(super) fn samples(fitted: &Fitted, exact: &Exact, levels: &Levels, size: f64) -> Vec<f32> {
+    let Exact { grid, samples: exact } = exact;
     let width = grid.size[0];
+    // Where the field has ended, only the true distance counts.
+    let mut samples = fitted.spline.sample_grid_where(grid, |[x, y], [right, above]| {
+        let middle = [(x + right) / 2, (y + above) / 2];
+        let reach = grid.at(x, y).distance(grid.at(right, above)) * 0.5 + grid.pixel;
+        exact[middle[1] * width + middle[0]] - reach < levels.falloff
+    });
     let reach = AT_CORNERS.map(|pixels| pixels * grid.pixel);
     let beyond = levels.falloff + 0.75 * grid.pixel;
     samples.par_chunks_mut(width).zip(exact.par_chunks(width)).enumerate().for_each(
@@ -59,7 +66,7 @@ pub(super) fn samples(fitted: &Fitted, exact: &[f64], grid: &Grid, levels: &Leve
 /// the control points of the interpolating spline. It makes corners four times as sharp.
 ///
 /// To each sample is added what reading takes off there; the border stays as it is.
-fn sharpened(samples: &[f32], width: usize) -> Vec<f32> {
+pub(super) fn sharpened(samples: &[f32], width: usize) -> Vec<f32> {
     let height = samples.len() / width;
     let mut out = samples.to_vec();
     out.par_chunks_mut(width).enumerate().filter(|(row, _)| (1..height - 1).contains(row)).for_each(
@@ -76,7 +83,7 @@ fn sharpened(samples: &[f32], width: usize) -> Vec<f32> {
 }
 
 /// From 0 at 0 to 1 at 1, flat at both, C².
-fn rise(t: f64) -> f64 {
+pub(super) fn rise(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * t * (10.0 + t * (6.0 * t - 15.0))
 }

@@ -1,26 +1,31 @@
 //! What the spline of a template must keep to.
 
 use super::contours;
+use super::exact::Exact;
 use super::levels::Levels;
 use super::outline::Outline;
 use super::samples::{Sample, Samples};
-use crate::thin_plate::{Constraint, CornerRidge, FitError, Grid, ThinPlate};
+use crate::thin_plate::{Constraint, CornerRidge, FitError, ThinPlate};
 use glam::DVec2;
 use rayon::prelude::*;
 
 /// Most constraints of a template. Shapes of ordinary complexity need 300 to 1,000; a tight spiral needs all.
 const MOST: usize = 2000;
 
-/// Most of them on the curve, on one contour of the distance, and on the skeleton of one side, at first.
+/// Most of them on the curve, about on one contour of the distance, and on the skeleton of one side, at first.
 const MOST_ON_CURVE: f64 = 400.0;
-const MOST_ON_CONTOUR: f64 = 100.0;
+const MOST_ON_CONTOUR: f64 = 80.0;
 const MOST_ON_SKELETON: usize = 100;
 
 /// Constraints that one round of corrections adds at most.
-const MOST_CORRECTIONS: usize = 300;
+const MOST_CORRECTIONS: usize = 400;
 
 /// Most places around corners that are looked at.
-const MOST_AROUND_CORNERS: usize = 2000;
+const MOST_AROUND_CORNERS: usize = 1000;
+
+/// Along the longer side of the curve, samples between which contours are traced; fewer if the falloff is wide.
+const TRACED: f64 = 64.0;
+const MOST_TRACED: f64 = 192.0;
 
 /// Smoothing away from the curve, where the distance may have kinks that the spline need not follow.
 const SMOOTHING: f64 = 1e-5;
@@ -50,14 +55,12 @@ pub(super) struct Subject<'a> {
     pub levels: &'a Levels,
     /// The longer side of the curve's box.
     pub size: f64,
-    /// A coarse image of the distance.
-    pub image: &'a [f64],
-    pub grid: &'a Grid,
+    pub exact: &'a Exact,
 }
 
 impl Subject<'_> {
-    /// Fits a spline to the curve, to contours of its distance and to its skeleton, then adds constraints where it
-    /// is still off, and fits again.
+    /// Fits a spline to the curve, to contours of its distance and to some places of its skeleton, then adds
+    /// constraints where it is still off, and fits again.
     pub fn fit(&self) -> Result<Fitted, FitError> {
         let ridges = self.ridges();
         let mut places = self.on_curve();
@@ -66,10 +69,11 @@ impl Subject<'_> {
         places.extend(self.on_skeleton(1));
         let mut constraints = self.constraints(&places, &ridges);
         let mut fitted = Fitted { spline: ThinPlate::fit(&constraints)?, ridges };
-        for _ in 0..3 {
+        // Again only where much is left, as on a shape with many corners, or a spiral.
+        for few in [0, 12, 60] {
             let most = MOST_CORRECTIONS.min(MOST.saturating_sub(constraints.len()));
             let places = self.corrections(&fitted, most);
-            if places.is_empty() {
+            if places.len() <= few {
                 break;
             }
             constraints.extend(self.constraints(&places, &fitted.ridges));
@@ -119,32 +123,33 @@ impl Subject<'_> {
 
     fn on_contours(&self) -> Vec<(DVec2, bool)> {
         let mut places = Vec::new();
+        let grid = &self.exact.grid;
+        let longer = grid.pixel * grid.size[0].max(grid.size[1]) as f64;
+        let wanted = (self.size / TRACED).max(longer / MOST_TRACED);
+        let coarse = self.exact.coarser(((wanted / grid.pixel) as usize).max(1));
         for level in self.levels.contours() {
             let around: f64 = self.samples.samples.iter().map(|s| s.length).sum();
             let spacing = (0.4 * level.abs()).max(around / MOST_ON_CONTOUR);
-            let found = contours::sample(self.image, self.grid, level, spacing);
+            let found = contours::sample(&coarse.samples, &coarse.grid, level, spacing);
             let thinner = (found.len() as f64 / (2.0 * MOST_ON_CONTOUR)).ceil().max(1.0) as usize;
             places.extend(found.into_iter().step_by(thinner).map(|p| (p, false)));
         }
         places
     }
 
-    /// Centres of the largest empty circles inside (0) or outside (1), apart by more than half of their radii.
+    /// Centres of the largest empty circles inside (0) or outside (1), apart by two thirds of their radii or more.
     fn on_skeleton(&self, side: usize) -> Vec<(DVec2, bool)> {
-        let limit = [self.levels.depth, self.levels.between][side] * 1.001;
+        let limit = [self.levels.depth, self.levels.falloff][side] * 1.001;
         let centre = |s: &Sample| {
             let (normal, room) = (s.normal?, s.room[side]);
-            let fits = room <= limit && room >= 0.1 * self.levels.depth.min(limit);
+            let fits = room <= limit && room >= 0.2 * self.levels.depth.min(limit);
             fits.then(|| (s.at + normal * if side == 0 { -room } else { room }, room))
         };
         let mut centres: Vec<(DVec2, f64)> = self.samples.samples.iter().filter_map(centre).collect();
         centres.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut kept: Vec<(DVec2, f64)> = Vec::new();
         for (p, room) in centres {
-            if kept.len() == MOST_ON_SKELETON {
-                break;
-            }
-            if kept.iter().all(|(other, _)| other.distance(p) > 0.6 * room) {
+            if kept.len() < MOST_ON_SKELETON && kept.iter().all(|(other, _)| other.distance(p) > 0.7 * room) {
                 kept.push((p, room));
             }
         }
@@ -160,11 +165,14 @@ impl Subject<'_> {
             let normal = s.normal.filter(|_| away > 0.5 * s.length)?;
             Some((s.at + normal * if side == 0 { -away } else { away }, false))
         };
-        let around = |s: &Sample| {
+        let around = |(i, s): (usize, &Sample)| {
             let on_curve = Some((s.at, true));
-            [on_curve, beside(s, 0, 0.3), beside(s, 0, 0.6), beside(s, 1, 0.3), beside(s, 1, 0.6)]
+            // Outside, half as many as inside: the true distance takes over there.
+            let share = if i.is_multiple_of(2) { 0.3 } else { 0.6 };
+            [on_curve, beside(s, 0, 0.3), beside(s, 0, 0.6), beside(s, 1, share)]
         };
-        let mut candidates: Vec<_> = self.samples.samples.iter().flat_map(around).flatten().collect();
+        let mut candidates: Vec<_> =
+            self.samples.samples.iter().enumerate().flat_map(around).flatten().collect();
         // Where a ridge fades, what is left for the spline bends most.
         let turns = (MOST_AROUND_CORNERS / (4 * ridges.len()).max(1)).min(16);
         for ridge in ridges {
@@ -182,7 +190,7 @@ impl Subject<'_> {
         let samples = &self.samples.samples;
         let candidates = self.candidates(&fitted.ridges);
         let miss = |&(p, on_curve): &(DVec2, bool)| {
-            let distance = if on_curve { 0.0 } else { self.outline.distance(p) };
+            let distance = if on_curve { 0.0 } else { self.exact.near(p) };
             let allowed = if on_curve { 4e-4 * self.size } else { 0.05 * distance.abs() };
             (fitted.value(p) - distance).abs() / allowed
         };

@@ -49,6 +49,8 @@ impl Levels {
         if inner < 0.3 * self.depth {
             levels.push(-0.6 * self.depth);
         }
+        // Around the deepest places, so that the spline does not flatten there.
+        levels.push(-0.9 * self.depth);
         levels
     }
 }

@@ -5,8 +5,10 @@
 //! where a swept solid blends with others, are gone, but for those at the corners of the curve, which are kept.
 
 mod blend;
+mod bulge;
 mod constraints;
 mod contours;
+mod exact;
 mod levels;
 mod outline;
 mod pressure;
@@ -16,6 +18,7 @@ use crate::curve::Curve;
 use crate::thin_plate::{FitError, Grid};
 use blobtree::{FieldImage, ParameterError, Template};
 use constraints::Subject;
+use exact::Exact;
 use glam::{DVec2, Vec2};
 use levels::Levels;
 use outline::Outline;
@@ -25,7 +28,7 @@ use samples::Samples;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Samples along the longer side of a drawing with ordinary detail, 16 to 2,048. Without any detail a quarter
-    /// suffices; fine detail gets up to twice as many.
+    /// suffices; fine detail gets up to half as many again.
     pub pixels: usize,
 }
 
@@ -88,10 +91,10 @@ const MOST_PARTS: usize = 1000;
 const WIDEST_FALLOFF: f64 = 18.0;
 
 /// Most samples of an image.
-const MOST_SAMPLES: f64 = 1.5e6;
+const MOST_SAMPLES: f64 = 8e5;
 
-/// Samples of the image in which contours are traced and the depth is sought, along the curve's longer side.
-const COARSE: f64 = 128.0;
+/// Samples of the images in which contours are traced and the depth is sought, along the curve's longer side.
+const COARSE: f64 = 64.0;
 
 /// Solves the template of a curve with the default [`Options`]; see [`solve_with`].
 pub fn solve(curve: &Curve, falloff: Option<f32>, pressure: &[(DVec2, f32)]) -> Result<Template, NoTemplate> {
@@ -105,7 +108,7 @@ pub fn solve(curve: &Curve, falloff: Option<f32>, pressure: &[(DVec2, f32)]) -> 
 /// - **Promises:** the zero contour of the image lies within 0.3 % of the drawing's size, and a pixel, of the
 ///   curve; beyond the falloff, the distance is nowhere below it; everywhere it is within 40 % of the true one,
 ///   0.15 % of the drawing's size, and a pixel. Any number of threads gives the same bytes.
-/// - **Cost:** O(points · pixels) at worst; about 0.1 s for an ordinary shape.
+/// - **Cost:** O(points · pixels) at worst; about 0.05 s for an ordinary shape.
 /// - **Source:** Schmidt & Wyvill 2011, §11.3.3. **Departs:** corners are kept by ridges beside the spline; the
 ///   spline also keeps to the skeleton and is corrected where it is off; the image is as fine as the drawing.
 pub fn solve_with(
@@ -130,24 +133,16 @@ pub fn solve_with(
         return Err(NoTemplate::Empty);
     }
     let levels = Levels::new(depth, falloff.map(f64::from));
-    let reach = levels.falloff.max(0.1 * depth);
-    let coarse = covering(low, high, reach, (size / COARSE).max((size + 2.0 * reach) / (3.0 * COARSE)));
-    let subject = Subject {
-        outline: &outline,
-        samples: &samples,
-        levels: &levels,
-        size,
-        image: &outline.image(&coarse),
-        grid: &coarse,
-    };
-    let fitted = subject.fit()?;
     let grid = covering(low, high, levels.falloff, pixel(&samples, low, high, levels.falloff, options));
-    let distance = blend::samples(&fitted, &outline.image(&grid), &grid, &levels, size);
+    let exact = &Exact::new(&outline, grid, levels.falloff);
+    let fitted = Subject { outline: &outline, samples: &samples, levels: &levels, size, exact }.fit()?;
+    let distance = image(&grid, blend::samples(&fitted, exact, &levels, size))?;
     let pressure =
         pressure::image(pressure, &grid).map(|(grid, samples)| image(&grid, samples)).transpose()?;
     let contours = curve.contours.iter().map(|c| c.points.iter().map(|p| p.as_vec2()).collect::<Vec<Vec2>>());
     Ok(Template {
-        distance: image(&grid, distance)?,
+        bulge: bulge::bulge(&distance, &exact.samples, depth as f32, levels.falloff as f32)?,
+        distance,
         pressure,
         falloff: levels.falloff as f32,
         depth: depth as f32,
@@ -211,7 +206,7 @@ fn covering(low: DVec2, high: DVec2, beyond: f64, pixel: f64) -> Grid {
     Grid { origin, pixel, size: [count.x as usize + 1, count.y as usize + 1] }
 }
 
-/// The pixel that the drawing's detail asks for: a quarter of the room beside all but the tightest twentieth of
+/// The pixel that the drawing's detail asks for: a third of the room beside all but the tightest twentieth of
 /// the curve, and a sixteenth of the falloff, within what the options allow.
 fn pixel(samples: &Samples, low: DVec2, high: DVec2, falloff: f64, options: &Options) -> f64 {
     let size = (high - low).max_element();
@@ -220,7 +215,7 @@ fn pixel(samples: &Samples, low: DVec2, high: DVec2, falloff: f64, options: &Opt
     rooms.sort_unstable_by(f64::total_cmp);
     let tight = rooms.get(rooms.len() / 20).copied().unwrap_or(size);
     let least = if samples.corners.is_empty() { 0.25 } else { 0.5 };
-    let for_detail = (4.0 * size / tight).clamp(least * usual, 2.0 * usual);
+    let for_detail = (3.0 * size / tight).clamp(least * usual, 1.5 * usual);
     // With fewer than 16 pixels across the falloff, the margin at its end would show in the gradient.
     let for_falloff = (16.0 * size / falloff).min(usual);
     let wanted = size / for_detail.max(for_falloff);
@@ -229,40 +224,11 @@ fn pixel(samples: &Samples, low: DVec2, high: DVec2, falloff: f64, options: &Opt
     wanted.max((extent.element_product() / MOST_SAMPLES).sqrt()).max(extent.max_element() / 4096.0)
 }
 
-/// The largest distance inside: the best place of a grid and of the centres of circles that touch the curve, then
-/// uphill in ever smaller steps.
+/// The largest distance inside.
 fn deepest(outline: &Outline, samples: &Samples, low: DVec2, high: DVec2) -> f64 {
-    let step = (high - low).max_element() / COARSE;
-    let grid = covering(low, high, 0.0, step);
-    let image = outline.image(&grid);
-    let width = grid.size[0];
-    let mut best = (DVec2::ZERO, f64::INFINITY);
-    for (i, &distance) in image.iter().enumerate() {
-        if distance < best.1 {
-            best = (grid.at(i % width, i / width), distance);
-        }
-    }
-    for sample in &samples.samples {
-        let centre =
-            sample.normal.map(|normal| sample.at - sample.room[0] * normal).filter(|p| p.is_finite());
-        if let Some(p) = centre {
-            let distance = outline.distance(p);
-            if distance < best.1 {
-                best = (p, distance);
-            }
-        }
-    }
-    let mut step = step;
-    for _ in 0..12 {
-        let around =
-            (0..8).map(|k| best.0 + step * DVec2::from_angle(f64::from(k) * std::f64::consts::FRAC_PI_4));
-        let next = around.map(|p| (p, outline.distance(p))).min_by(|a, b| a.1.total_cmp(&b.1));
-        match next {
-            Some(next) if next.1 < best.1 => best = next,
-            _ => step *= 0.5,
-        }
-    }
-    -best.1
+    let grid = covering(low, high, 0.0, (high - low).max_element() / COARSE);
+    let centre = |s: &samples::Sample| s.normal.map(|normal| s.at - s.room[0] * normal);
+    Exact::new(outline, grid, 0.0).deepest(outline, samples.samples.iter().filter_map(centre))
 }
 
 #[cfg(test)]

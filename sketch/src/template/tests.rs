@@ -114,7 +114,7 @@ impl Judged {
             pixel: 0.93 * pixel,
             size: [width - 2, height - 2],
         };
-        let exact = self.outline.image(&grid);
+        let exact = self.outline.image(&grid, f64::INFINITY);
         exact.into_iter().enumerate().map(move |(i, exact)| {
             let p = grid.at(i % grid.size[0], i / grid.size[0]);
             let (value, gradient) = image.value_and_gradient(p.as_vec2());
@@ -193,6 +193,27 @@ fn the_gradient_is_about_one_between_the_contours_away_from_corners_and_kinks() 
             worst = worst.max(off);
         }
         assert!(all > 100 && worst < 0.25, "{}: gradient off by {worst}", judged.name);
+    }
+}
+
+#[test]
+fn the_gradient_does_not_jump_between_the_cells_of_the_image() {
+    for judged in Judged::all(None) {
+        let image = &judged.template.distance;
+        let (origin, pixel) = (image.origin().as_dvec2(), f64::from(image.pixel()));
+        let [width, height] = image.size();
+        for i in (0..(width - 3) * (height - 3)).step_by(11) {
+            let cell = DVec2::new((1 + i % (width - 3)) as f64, (1 + i / (width - 3)) as f64);
+            for (across, along) in [(DVec2::X, DVec2::Y), (DVec2::Y, DVec2::X)] {
+                let border = cell + 0.5 * across + 0.3 * along;
+                let [before, after] = [-1e-3, 1e-3].map(|step| {
+                    let p = origin + pixel * (border + step * across);
+                    image.value_and_gradient(p.as_vec2()).1
+                });
+                let jump = before.distance(after);
+                assert!(jump < 0.05, "{}: {before} and {after} at {border}", judged.name);
+            }
+        }
     }
 }
 

@@ -87,12 +87,12 @@ fn wrong_parameters_are_told_with_what_would_be_right() {
         ),
         (r#"{"type": "inflation", "drawing": {"strokes": []}}"#, "the drawing: it encloses nothing"),
         (
-            r#"{"type": "sweep", "length": 2, "drawing": {"strokes": [{"points": [{"at": [0]}]}]}}"#,
-            "`drawing.strokes[0].points[0].at` is a list of 1, not two numbers, like [0, 10]",
+            r#"{"type": "sweep", "length": 2, "drawing": {"strokes": [{"points": [[0]]}]}}"#,
+            "`drawing.strokes[0].points[0]` is a list of 1, not [x, y], [x, y, pressure] or [x, y, pressure, smoothing]",
         ),
         (
-            r#"{"type": "revolution", "drawing": {"strokes": [{"points": [{"at": [0, 2e5]}]}]}}"#,
-            "`drawing.strokes.points.at` is Vec2(0.0, 200000.0), not two coordinates of -100000 to 100000 mm",
+            r#"{"type": "revolution", "drawing": {"strokes": [{"points": [[0, 2e5]]}]}}"#,
+            "`drawing.strokes.points` is Vec2(0.0, 200000.0), not two coordinates of -100000 to 100000 mm",
         ),
         (
             r#"{"type": "inflation", "plane": {"up": [2, 0, 0]}, "drawing": {"strokes": []}}"#,

@@ -178,9 +178,7 @@ impl SceneSources for Counted {
 #[test]
 fn equal_drawings_are_solved_once_for_each_falloff_and_shared() {
     let node = |rest: &str, x: f32| {
-        format!(
-            r#"{{{rest}, "drawing": {{"strokes": [{{"points": [{{"at": [0, 0]}}, {{"at": [{x}, 0]}}, {{"at": [0, 5]}}]}}]}}}}"#
-        )
+        format!(r#"{{{rest}, "drawing": {{"strokes": [{{"points": [[0, 0], [{x}, 0], [0, 5]]}}]}}}}"#)
     };
     let text = file(&format!(
         r#"{{"type": "union", "children": [{}, {}, {}, {}]}}"#,
