@@ -47,7 +47,7 @@ pub fn run(args: &SketchArgs, job: &mut Job) -> Result<Report, Failure> {
     if let Some(path) = &args.field {
         let place = args.places.first().copied().unwrap_or_else(|| in_a_row(args, 0));
         let plane = SketchPlane { origin: place, ..SketchPlane::default() };
-        let tree = Tree::new(&solids[0].node.clone().into());
+        let tree = Tree::new(&solids[0].node);
         let picture = job.stage("field", |_| field_picture::png(path, &tree, &plane))?;
         job.write(path, &picture)?;
         report.put("field", path.display().to_string());

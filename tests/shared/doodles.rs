@@ -48,7 +48,7 @@ fn inflated(bytes: &[u8], index: usize) -> Result<Mesh, NoOutline> {
     let drawing = Arc::new(Placement::of_size(&sketch, SIZE, Standing::OnGround).drawing(&sketch));
     let template = sketch::solve(&drawing, None)?;
     let outline = Outline { drawing, plane: SketchPlane::default(), template };
-    let node = Node::new(Shape::Primitive(Primitive::Inflation(outline.inflation()))).into();
+    let node = Node::new(Shape::Primitive(Primitive::Inflation(outline.inflation())));
     let cell = CellSize::across(SIZE, CELLS).expect("an ordinary size");
     let surface = Surface::build(&Tree::new(&node), cell, &Options::default());
     Ok(surface.expect("an ordinary shape").mesh())
