@@ -159,8 +159,7 @@ fn write(
         let text = job.stage("encode", |_| scene.to_text().map_err(|e| Failure::of(output, e)))?;
         job.write(output, text.as_bytes())?;
         report.put("output", output.display().to_string());
-        let made = kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
-        report.line(format!("{}: {} ({made})", output.display(), counted(kinds.len(), "solid")));
+        report.line(format!("{}: {}", output.display(), made(&kinds)));
         return Ok(());
     }
     let meshed = meshing::mesh_scene(&args.drawings[0], &scene, &args.resolution, job)?;
@@ -168,4 +167,12 @@ fn write(
     meshing::write_mesh(&args.drawings[0], output, &meshed.mesh, &attachments, job)?;
     mesh::tell(report, output, &meshed);
     Ok(())
+}
+
+/// How many solids of each kind, in words.
+fn made(kinds: &[SolidKind]) -> String {
+    let all = [SolidKind::Inflate, SolidKind::Sweep, SolidKind::Revolve, SolidKind::Line];
+    let counts = all.map(|kind| (kinds.iter().filter(|k| **k == kind).count(), kind.name()));
+    let told = counts.iter().filter(|(count, _)| *count > 0).map(|(count, name)| format!("{count} × {name}"));
+    format!("{} ({})", counted(kinds.len(), "solid"), told.collect::<Vec<_>>().join(", "))
 }

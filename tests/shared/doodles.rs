@@ -4,7 +4,6 @@ use crate::shared;
 use blobtree::{Node, Primitive, Shape, SketchPlane, Tree};
 use mesh::{Mesh, SelfIntersections};
 use polygonizer::{CellSize, Options, Surface};
-use rayon::prelude::*;
 use sketch::curve::NoOutline;
 use sketch::solid::Outline;
 use sketch::stroke::{DoodleChoice, FileFormat, Placement, Sketch, Standing, read};
@@ -84,11 +83,16 @@ fn doodles_become_closed_meshes_or_say_why_not() {
         .collect();
     assert!(drawings.len() * step > 4000, "only {} drawings", drawings.len());
     // One thread for each drawing, so that times are those of one core.
-    let alone = |(name, bytes, index): &(String, Arc<Vec<u8>>, usize)| {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let alone = |drawings: &[(String, Arc<Vec<u8>>, usize)]| -> Vec<Fate> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-        pool.install(|| fate(name.clone(), bytes, *index))
+        pool.install(|| drawings.iter().map(|(name, bytes, i)| fate(name.clone(), bytes, *i)).collect())
     };
-    let mut fates: Vec<Fate> = drawings.par_iter().map(alone).collect();
+    let mut fates: Vec<Fate> = std::thread::scope(|scope| {
+        let shares = drawings.chunks(drawings.len().div_ceil(cores));
+        let workers: Vec<_> = shares.map(|share| scope.spawn(move || alone(share))).collect();
+        workers.into_iter().flat_map(|worker| worker.join().expect("no drawing panics")).collect()
+    });
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     for reason in fates.iter().filter_map(|fate| fate.result.as_ref().err()) {
         let words: String = reason.to_string().chars().take_while(|c| !c.is_ascii_digit()).collect();
