@@ -2,7 +2,7 @@
 //!
 //! The same seed gives the same tree everywhere. All node types occur except imported meshes, which need a
 //! file, and drawn solids, which need templates; hand a mesh in with [`RandomTree::mesh`], and ask for drawn
-//! solids with [`RandomTree::drawn`].
+//! solids with [`RandomTree`]'s `drawn`.
 
 mod drawn;
 

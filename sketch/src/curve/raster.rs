@@ -171,7 +171,7 @@ struct Envelope {
 }
 
 impl Envelope {
-    /// Puts for each i the least of values[j] + (i − j)².
+    /// Puts for each i the least of `values[j]` + (i − j)².
     fn lower(&mut self, values: &mut [f64]) {
         self.hull.clear();
         for (i, &value) in values.iter().enumerate() {

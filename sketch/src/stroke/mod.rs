@@ -1,8 +1,8 @@
 //! What a pen leaves behind: samples, cleaned, kept as a sketch, read from files.
 //!
-//! A [`Stroke`] is one movement of the pen as a device reports it, in pixels with y down. [`clean`] takes out
+//! A [`Stroke`] is one movement of the pen as a device reports it, in pixels with y down. [`clean()`] takes out
 //! what no hand drew. A [`Sketch`] holds the strokes of one drawing and what the eraser and the smoothing
-//! gesture did to them; a [`Placement`] turns it into a [`blobtree::Drawing`] in mm with y up. [`read`] takes
+//! gesture did to them; a [`Placement`] turns it into a [`blobtree::Drawing`] in mm with y up. [`read()`] takes
 //! strokes from files. What strokes mean is decided elsewhere: by the curve that is fitted to them, by
 //! [`crate::gesture`] and by [`crate::suggest`].
 

@@ -83,7 +83,7 @@ pub fn detect(bytes: &[u8], name: Option<&Path>) -> Result<FileFormat, ReadError
 /// The strokes in a file, in pixels with y down, at most [`MAX_STROKES`] of at most [`MAX_SAMPLES`] samples.
 ///
 /// Of a file of doodles, `choice` picks one; other files hold one drawing. Curves of an SVG become lines that
-/// leave them by less than 1/4000 of the picture's size. Coordinates are as the file says; [`super::clean`]
+/// leave them by less than 1/4000 of the picture's size. Coordinates are as the file says; [`super::clean()`]
 /// takes out what cannot be used.
 ///
 /// Errors: what is wrong, and where; never a panic. **Cost:** linear in the file, which is refused above
