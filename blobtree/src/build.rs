@@ -30,7 +30,7 @@ use crate::primitive::{
     Segment, Torus,
 };
 use crate::sketched::{
-    Drawing, Inflation, LinearSweep, PathSweep, Profile, Revolution, RevolutionAxis, SketchPlane, Template,
+    Drawing, Inflation, LinearSweep, PathSweep, Revolution, RevolutionAxis, SketchPlane, Template,
 };
 use crate::warp::{Axis, Bend, Taper, Transform, Twist, Warp};
 use glam::Vec3;
@@ -109,16 +109,8 @@ pub fn half_space(point: impl Into<Vec3>, normal: impl Into<Vec3>) -> Node {
 
 /// A drawing blown up like a cushion, upright in the plane y = 0: the drawing and the template solved for it.
 pub fn inflation(drawing: impl Into<Arc<Drawing>>, template: impl Into<Arc<Template>>) -> Node {
-    primitive(Primitive::Inflation(Inflation {
-        drawing: drawing.into(),
-        plane: SketchPlane::default(),
-        thickness: None,
-        contrast: 0.0,
-        pressure: 0.0,
-        profile: Profile::Round,
-        falloff: None,
-        template: template.into(),
-    }))
+    let plane = SketchPlane::default();
+    primitive(Primitive::Inflation(Inflation::new(drawing.into(), plane, template.into())))
 }
 
 /// A drawing moved along its normal, with sharp ends, its middle upright in the plane y = 0: the drawing, the
@@ -128,29 +120,14 @@ pub fn linear_sweep(
     template: impl Into<Arc<Template>>,
     length: f32,
 ) -> Node {
-    let (drawing, template, plane) = (drawing.into(), template.into(), SketchPlane::default());
-    let (offset, fillet, falloff) = (0.0, 0.0, None);
-    primitive(Primitive::LinearSweep(LinearSweep {
-        drawing,
-        plane,
-        length,
-        offset,
-        fillet,
-        falloff,
-        template,
-    }))
+    let plane = SketchPlane::default();
+    primitive(Primitive::LinearSweep(LinearSweep::new(drawing.into(), plane, template.into(), length)))
 }
 
 /// A drawing turned about its y axis, which is the z axis of space: the drawing and the template solved for it.
 pub fn revolution(drawing: impl Into<Arc<Drawing>>, template: impl Into<Arc<Template>>) -> Node {
-    primitive(Primitive::Revolution(Revolution {
-        drawing: drawing.into(),
-        plane: SketchPlane::default(),
-        axis: RevolutionAxis::default(),
-        side: None,
-        falloff: None,
-        template: template.into(),
-    }))
+    let (plane, axis) = (SketchPlane::default(), RevolutionAxis::default());
+    primitive(Primitive::Revolution(Revolution::new(drawing.into(), plane, template.into(), axis)))
 }
 
 /// A drawing, upright in the plane y = 0, moved along a path, with sharp ends: the drawing, the template solved
@@ -160,14 +137,8 @@ pub fn path_sweep<P: Into<Vec3>>(
     template: impl Into<Arc<Template>>,
     path: impl IntoIterator<Item = P>,
 ) -> Node {
-    primitive(Primitive::PathSweep(PathSweep {
-        drawing: drawing.into(),
-        plane: SketchPlane::default(),
-        path: path.into_iter().map(Into::into).collect(),
-        fillet: 0.0,
-        falloff: None,
-        template: template.into(),
-    }))
+    let (plane, path) = (SketchPlane::default(), path.into_iter().map(Into::into).collect());
+    primitive(Primitive::PathSweep(PathSweep::new(drawing.into(), plane, template.into(), path)))
 }
 
 /// All of them.

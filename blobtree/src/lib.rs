@@ -140,6 +140,6 @@ pub use scene::{
 };
 pub use sketched::{
     Drawing, DrawnPoint, DrawnStroke, FieldImage, Holes, Inflation, LinearSweep, PathSweep, Profile,
-    Revolution, RevolutionAxis, Side, SketchPlane, Template,
+    Revolution, RevolutionAxis, Side, SketchPlane, Solved, Template,
 };
 pub use warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};

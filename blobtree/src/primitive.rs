@@ -113,7 +113,7 @@ impl Primitive {
             Self::PathSweep(p) => (&mut p.drawing, p.falloff, &mut p.template),
             _ => return None,
         };
-        Some(Drawn { drawing, falloff, template })
+        Some(Drawn { drawing, falloff, template: &mut template.0 })
     }
 }
 

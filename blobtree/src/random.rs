@@ -157,37 +157,26 @@ impl RandomTree {
     ) -> Primitive {
         match self.rng.u32(..4) {
             0 => Primitive::Inflation(Inflation {
-                drawing,
-                plane,
                 thickness: self.rng.bool().then(|| self.size()),
                 contrast: if self.rng.bool() { 0.0 } else { self.between(0.0, 0.9) },
                 pressure: if self.rng.bool() { 0.0 } else { self.rng.f32() },
                 profile: if self.rng.bool() { Profile::Round } else { Profile::Flat },
                 falloff,
-                template,
+                ..Inflation::new(drawing, plane, template)
             }),
             1 => {
                 let length = self.size();
                 let fillet = if self.rng.bool() { 0.0 } else { self.between(0.0, 0.5) * length };
                 let offset = self.between(-20.0, 20.0);
-                Primitive::LinearSweep(LinearSweep {
-                    drawing,
-                    plane,
-                    length,
-                    offset,
-                    fillet,
-                    falloff,
-                    template,
-                })
+                let sweep = LinearSweep::new(drawing, plane, template, length);
+                Primitive::LinearSweep(LinearSweep { offset, fillet, falloff, ..sweep })
             }
             2 => {
                 let at = Vec2::new(self.between(-30.0, 30.0), 0.0);
-                let axis = RevolutionAxis {
-                    at,
-                    direction: self.turn().mul_vec3(Vec3::X).truncate() + Vec2::Y * 1.5,
-                };
+                let direction = self.turn().mul_vec3(Vec3::X).truncate() + Vec2::Y * 1.5;
                 let side = [None, Some(Side::Left), Some(Side::Right), Some(Side::Both)][self.rng.usize(..4)];
-                Primitive::Revolution(Revolution { drawing, plane, axis, side, falloff, template })
+                let revolution = Revolution::new(drawing, plane, template, RevolutionAxis { at, direction });
+                Primitive::Revolution(Revolution { side, falloff, ..revolution })
             }
             _ => {
                 let (mut at, mut ahead) = (plane.origin, self.direction());
@@ -198,7 +187,8 @@ impl RandomTree {
                     path.push(at);
                 }
                 let fillet = if self.rng.bool() { 0.0 } else { self.size() / 4.0 };
-                Primitive::PathSweep(PathSweep { drawing, plane, path, fillet, falloff, template })
+                let sweep = PathSweep::new(drawing, plane, template, path);
+                Primitive::PathSweep(PathSweep { fillet, falloff, ..sweep })
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::stroke::bounds;
 use blobtree::{
-    Drawing, Inflation, LinearSweep, PathSweep, Profile, Revolution, RevolutionAxis, SketchPlane, Template,
+    Drawing, Inflation, LinearSweep, PathSweep, Revolution, RevolutionAxis, SketchPlane, Template,
 };
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -33,44 +33,21 @@ impl Outline {
 
     /// Blown up, as round as it is wide.
     pub fn inflation(&self) -> Inflation {
-        Inflation {
-            drawing: self.drawing.clone(),
-            plane: self.plane,
-            thickness: None,
-            contrast: 0.0,
-            pressure: 0.0,
-            profile: Profile::Round,
-            falloff: None,
-            template: self.template.clone(),
-        }
+        Inflation::new(self.drawing.clone(), self.plane, self.template.clone())
     }
 
     /// As thick as a biscuit of its size, half of it on each side of the plane, with sharp edges.
     pub fn sweep(&self) -> LinearSweep {
         let [low, high] = self.bounds();
-        LinearSweep {
-            drawing: self.drawing.clone(),
-            plane: self.plane,
-            length: (THICKNESS * (high - low).element_product().max(0.0).sqrt()).max(THINNEST),
-            offset: 0.0,
-            fillet: 0.0,
-            falloff: None,
-            template: self.template.clone(),
-        }
+        let length = (THICKNESS * (high - low).element_product().max(0.0).sqrt()).max(THINNEST);
+        LinearSweep::new(self.drawing.clone(), self.plane, self.template.clone(), length)
     }
 
     /// Turned about an axis; without one, about the upright through its middle.
     pub fn revolution(&self, axis: Option<RevolutionAxis>) -> Revolution {
         let [low, high] = self.bounds();
         let upright = RevolutionAxis { at: 0.5 * (low + high), direction: Vec2::Y };
-        Revolution {
-            drawing: self.drawing.clone(),
-            plane: self.plane,
-            axis: axis.unwrap_or(upright),
-            side: None,
-            falloff: None,
-            template: self.template.clone(),
-        }
+        Revolution::new(self.drawing.clone(), self.plane, self.template.clone(), axis.unwrap_or(upright))
     }
 
     /// Moved along a path in space, mm: its middle goes along, wherever the outline was drawn.
@@ -78,13 +55,7 @@ impl Outline {
         let [low, high] = self.bounds();
         let start = path.first().copied().unwrap_or(self.plane.origin);
         let origin = self.plane.origin + start - self.plane.point(0.5 * (low + high));
-        PathSweep {
-            drawing: self.drawing.clone(),
-            plane: SketchPlane { origin, ..self.plane },
-            path,
-            fillet: 0.0,
-            falloff: None,
-            template: self.template.clone(),
-        }
+        let plane = SketchPlane { origin, ..self.plane };
+        PathSweep::new(self.drawing.clone(), plane, self.template.clone(), path)
     }
 }

@@ -70,7 +70,7 @@ impl Inflated {
         let nowhere = Rectangle { min: Vec2::splat(f32::MAX), max: Vec2::splat(f32::MIN) };
         Self {
             frame,
-            template: template.clone(),
+            template: template.0.clone(),
             reach: reach(template, falloff.width()).unwrap_or(nowhere),
             tips: Tip::all(template),
             depth,

@@ -295,7 +295,7 @@ mod tests {
             path,
             fillet: 0.0,
             falloff: None,
-            template: std::sync::Arc::default(),
+            template: crate::sketched::Solved::default(),
         }
     }
 

@@ -26,7 +26,7 @@ pub(super) fn inflation(p: &Inflation, child_from_world: &DAffine3) -> Leaf {
 pub(super) fn linear_sweep(p: &LinearSweep, child_from_world: &DAffine3) -> Leaf {
     let half = 0.5 * p.length;
     let falloff = section::falloff(p.falloff, p.template.depth.min(half), &p.template);
-    let section = Section::new(&p.template, &falloff);
+    let section = Section::new(&p.template.0, &falloff);
     let fillet = p.fillet.min(p.template.depth).min(half);
     let frame = in_plane(&p.plane, p.offset, child_from_world);
     Leaf::Extrusion(Fallen::new(frame, Extrusion { section, half, fillet }, falloff))
@@ -40,7 +40,7 @@ pub(super) fn revolution(p: &Revolution, child_from_world: &DAffine3) -> Leaf {
     let origin = p.plane.point(p.axis.at).as_dvec3();
     let frame =
         Frame::new(DAffine3::from_mat3(turn) * DAffine3::from_translation(-origin) * *child_from_world);
-    let solid = Revolved { section: Section::new(&p.template, &falloff), profile };
+    let solid = Revolved { section: Section::new(&p.template.0, &falloff), profile };
     Leaf::Revolved(Fallen::new(frame, solid, falloff))
 }
 
@@ -53,7 +53,7 @@ fn axes(p: &Revolution, profile: &revolved::Profile) -> (DVec3, DVec3, DVec3) {
 
 pub(super) fn path_sweep(p: &PathSweep, child_from_world: &DAffine3) -> Leaf {
     let falloff = section::falloff(p.falloff, p.template.depth, &p.template);
-    let pipe = Pipe::new(p, Section::new(&p.template, &falloff));
+    let pipe = Pipe::new(p, Section::new(&p.template.0, &falloff));
     Leaf::Pipe(Fallen::new(Frame::new(*child_from_world), pipe, falloff))
 }
 
@@ -95,5 +95,5 @@ pub(super) fn revolution_reach(p: &Revolution) -> Aabb {
 
 pub(super) fn path_sweep_reach(p: &PathSweep) -> Aabb {
     let falloff = section::falloff(p.falloff, p.template.depth, &p.template);
-    Pipe::new(p, Section::new(&p.template, &falloff)).reach()
+    Pipe::new(p, Section::new(&p.template.0, &falloff)).reach()
 }

@@ -11,4 +11,4 @@ pub use field_image::FieldImage;
 pub(crate) use field_image::{Reading, Rectangle};
 pub use plane::SketchPlane;
 pub use primitives::{Inflation, LinearSweep, PathSweep, Profile, Revolution, RevolutionAxis, Side};
-pub use template::Template;
+pub use template::{Solved, Template};

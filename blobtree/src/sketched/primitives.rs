@@ -4,7 +4,7 @@
 //! `falloff` is how far the influence reaches beyond the surface; without it, the field reaches 1 just at the
 //! deepest place of the drawing.
 
-use super::{Drawing, SketchPlane, Template};
+use super::{Drawing, SketchPlane, Solved, Template};
 use crate::checks::{Checked, ParameterError, length, number, one_of_length, place, place_in_plane};
 use crate::primitive::falloff;
 use glam::{Vec2, Vec3};
@@ -24,12 +24,10 @@ use std::sync::Arc;
 /// falloff along the normal. Its height follows the distance from the curve, which has ridges halfway between
 /// sides of the curve; and its surface depends on the falloff. The surface here is a true ellipsoid over a circle,
 /// smooth, and does not change with the falloff.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Inflation {
     /// What was drawn.
-    #[serde(with = "shared")]
-    #[schemars(with = "Drawing")]
     pub drawing: Arc<Drawing>,
     /// Where the drawing lies.
     #[serde(default, skip_serializing_if = "SketchPlane::is_default")]
@@ -57,7 +55,7 @@ pub struct Inflation {
     pub falloff: Option<f32>,
     /// Solved from the drawing.
     #[serde(skip)]
-    pub template: Arc<Template>,
+    pub template: Solved,
 }
 
 /// The shape of an inflation across.
@@ -79,12 +77,10 @@ impl Profile {
 }
 
 /// A drawing moved along its plane's normal: flat ends, sharp or filleted.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinearSweep {
     /// What was drawn.
-    #[serde(with = "shared")]
-    #[schemars(with = "Drawing")]
     pub drawing: Arc<Drawing>,
     /// Where the drawing lies.
     #[serde(default, skip_serializing_if = "SketchPlane::is_default")]
@@ -108,16 +104,14 @@ pub struct LinearSweep {
     pub falloff: Option<f32>,
     /// Solved from the drawing.
     #[serde(skip)]
-    pub template: Arc<Template>,
+    pub template: Solved,
 }
 
 /// A drawing turned about an axis in its plane.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Revolution {
     /// What was drawn.
-    #[serde(with = "shared")]
-    #[schemars(with = "Drawing")]
     pub drawing: Arc<Drawing>,
     /// Where the drawing lies.
     #[serde(default, skip_serializing_if = "SketchPlane::is_default")]
@@ -135,7 +129,7 @@ pub struct Revolution {
     pub falloff: Option<f32>,
     /// Solved from the drawing.
     #[serde(skip)]
-    pub template: Arc<Template>,
+    pub template: Solved,
 }
 
 /// A line in a drawing about which it turns.
@@ -181,12 +175,10 @@ pub enum Side {
 /// The drawing starts where the path does, turned from its plane into the one across the path, and keeps its
 /// place beside the path. Where the path bends, its straight parts meet in the plane halfway between them.
 /// **Source:** Schmidt & Wyvill 2011, §11.3.3, "arbitrary trajectories".
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PathSweep {
     /// What was drawn.
-    #[serde(with = "shared")]
-    #[schemars(with = "Drawing")]
     pub drawing: Arc<Drawing>,
     /// Where the drawing lies.
     #[serde(default, skip_serializing_if = "SketchPlane::is_default")]
@@ -205,7 +197,7 @@ pub struct PathSweep {
     pub falloff: Option<f32>,
     /// Solved from the drawing.
     #[serde(skip)]
-    pub template: Arc<Template>,
+    pub template: Solved,
 }
 
 fn upwards() -> Vec2 {
@@ -217,61 +209,46 @@ fn is_zero(x: &f32) -> bool {
     *x == 0.0
 }
 
-/// Drawings behind shared pointers, written as if they stood there themselves.
-mod shared {
-    use super::{Arc, Drawing};
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub fn serialize<S: Serializer>(drawing: &Arc<Drawing>, serializer: S) -> Result<S::Ok, S::Error> {
-        drawing.as_ref().serialize(serializer)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<Drawing>, D::Error> {
-        Drawing::deserialize(deserializer).map(Arc::new)
-    }
-}
-
-/// Equal but for the template, which follows from the rest.
-impl PartialEq for Inflation {
-    fn eq(&self, other: &Self) -> bool {
-        let Self { drawing, plane, thickness, contrast, pressure, profile, falloff, template: _ } = self;
-        (drawing, plane, thickness, contrast, pressure, profile, falloff)
-            == (
-                &other.drawing,
-                &other.plane,
-                &other.thickness,
-                &other.contrast,
-                &other.pressure,
-                &other.profile,
-                &other.falloff,
-            )
+impl Inflation {
+    /// The drawing blown up as thick as it is wide, round, with its own falloff.
+    pub fn new(drawing: Arc<Drawing>, plane: SketchPlane, template: Arc<Template>) -> Self {
+        Self {
+            drawing,
+            plane,
+            thickness: None,
+            contrast: 0.0,
+            pressure: 0.0,
+            profile: Profile::Round,
+            falloff: None,
+            template: Solved(template),
+        }
     }
 }
 
-/// Equal but for the template, which follows from the rest.
-impl PartialEq for LinearSweep {
-    fn eq(&self, other: &Self) -> bool {
-        let Self { drawing, plane, length, offset, fillet, falloff, template: _ } = self;
-        (drawing, plane, length, offset, fillet, falloff)
-            == (&other.drawing, &other.plane, &other.length, &other.offset, &other.fillet, &other.falloff)
+impl LinearSweep {
+    /// The drawing moved by `length` mm, half of it on each side of the plane, with sharp ends and its own falloff.
+    pub fn new(drawing: Arc<Drawing>, plane: SketchPlane, template: Arc<Template>, length: f32) -> Self {
+        let (offset, fillet, falloff) = (0.0, 0.0, None);
+        Self { drawing, plane, length, offset, fillet, falloff, template: Solved(template) }
     }
 }
 
-/// Equal but for the template, which follows from the rest.
-impl PartialEq for Revolution {
-    fn eq(&self, other: &Self) -> bool {
-        let Self { drawing, plane, axis, side, falloff, template: _ } = self;
-        (drawing, plane, axis, side, falloff)
-            == (&other.drawing, &other.plane, &other.axis, &other.side, &other.falloff)
+impl Revolution {
+    /// The fuller side of the drawing turned about an axis, with its own falloff.
+    pub fn new(
+        drawing: Arc<Drawing>,
+        plane: SketchPlane,
+        template: Arc<Template>,
+        axis: RevolutionAxis,
+    ) -> Self {
+        Self { drawing, plane, axis, side: None, falloff: None, template: Solved(template) }
     }
 }
 
-/// Equal but for the template, which follows from the rest.
-impl PartialEq for PathSweep {
-    fn eq(&self, other: &Self) -> bool {
-        let Self { drawing, plane, path, fillet, falloff, template: _ } = self;
-        (drawing, plane, path, fillet, falloff)
-            == (&other.drawing, &other.plane, &other.path, &other.fillet, &other.falloff)
+impl PathSweep {
+    /// The drawing moved along a path, mm, with sharp ends and its own falloff.
+    pub fn new(drawing: Arc<Drawing>, plane: SketchPlane, template: Arc<Template>, path: Vec<Vec3>) -> Self {
+        Self { drawing, plane, path, fillet: 0.0, falloff: None, template: Solved(template) }
     }
 }
 

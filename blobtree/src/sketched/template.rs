@@ -2,6 +2,8 @@
 
 use super::FieldImage;
 use glam::Vec2;
+use std::ops::Deref;
+use std::sync::Arc;
 
 /// What the sketch room makes of a drawing for the tree to sweep.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,5 +35,24 @@ impl Default for Template {
         let bulge = distance.bulge(1.0);
         let (contours, corners) = (Vec::new(), Vec::new());
         Self { distance, bulge, pressure: None, falloff: 1.0, depth: 1.0, contours, corners }
+    }
+}
+
+/// A template in the node whose drawing it was solved from. All are equal: what they hold follows from the
+/// drawing and the falloff, by which nodes are compared.
+#[derive(Clone, Debug, Default)]
+pub struct Solved(pub Arc<Template>);
+
+impl PartialEq for Solved {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Deref for Solved {
+    type Target = Template;
+
+    fn deref(&self) -> &Template {
+        &self.0
     }
 }

@@ -197,7 +197,7 @@ fn equal_drawings_are_solved_once_for_each_falloff_and_shared() {
     else {
         panic!("an inflation and a sweep")
     };
-    assert!(Arc::ptr_eq(&a.template, &b.template) && Arc::ptr_eq(&a.drawing, &b.drawing));
+    assert!(Arc::ptr_eq(&a.template.0, &b.template.0) && Arc::ptr_eq(&a.drawing, &b.drawing));
     let Err(error) = Scene::from_bytes(text.as_bytes(), &mut NoSources) else { panic!("nothing solves it") };
     assert!(error.to_string().ends_with("node /0: the drawing: drawings are not read here"), "{error}");
 }
