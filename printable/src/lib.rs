@@ -1,0 +1,16 @@
+//! What prints without supports, and what does not.
+//!
+//! A printer makes a solid in layers of one height h, from the bed z = 0 upwards. A layer prints without supports
+//! if it reaches beyond the layer below by at most `r = h · tan θ`, where θ is the largest overhang, measured
+//! from the vertical:
+//!
+//! ```text
+//! S(k+1) ⊆ S(k) ⊕ B(r)                                          (Reiner & Lefebvre 2016, equation 1)
+//! ```
+//!
+//! with S(k) the slice of layer k and B(r) a disc. Whatever lies on the bed is supported. [`SupportRule`] is
+//! that rule with its two numbers.
+
+mod rule;
+
+pub use rule::{LayerHeight, OverhangAngle, RuleError, SupportRule};
