@@ -2,6 +2,8 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
+use printable::slices::Bottom;
+use printable::{LayerHeight, OverhangAngle};
 use sketch::stroke::DoodleChoice;
 use std::path::PathBuf;
 
@@ -57,11 +59,21 @@ pub enum Verb {
         after_help = "Example: trullo render snowman.trullo -o snowman.png --view front --size 800x600"
     )]
     Render(RenderArgs),
-    /// Say whether a mesh is the boundary of a solid, and what it measures.
+    /// Say whether a shape prints without supports, and what it measures.
     ///
-    /// A scene is meshed first. Exit code 1 if something is wrong.
-    #[command(after_help = "Example: trullo check bunny.stl")]
+    /// Looks whether the mesh is the boundary of a solid, slices it, and looks in every layer for places that hang in
+    /// the air and for islands; then for steep facets, closed voids, thin walls, and whether it stands. A scene is
+    /// meshed first. A certificate in a 3MF file is put to the test. Exit code 1 if something is wrong.
+    #[command(
+        after_help = "Example: trullo check bunny.stl --height 60 --layer-height 0.2 --max-overhang 50 --picture bunny.png"
+    )]
     Check(CheckArgs),
+    /// Draw the layers of a shape as they are printed.
+    ///
+    /// Every layer is cut in the middle of its height. The output is one SVG file with a group for each layer, or a
+    /// new folder with a file for each layer.
+    #[command(after_help = "Example: trullo slice bunny.stl -o layers --as png --pixel 0.05")]
+    Slice(SliceArgs),
 }
 
 /// `trullo eval`.
@@ -104,6 +116,12 @@ pub struct MeshArgs {
     /// Mesh the shape as it was drawn, even where it would need supports.
     #[arg(long)]
     pub no_constraint: bool,
+    /// Check that the mesh prints without supports, and say so in the file, which must be .3mf. If it does not, it is
+    /// written without, and the exit code is 1.
+    #[arg(long)]
+    pub certify: bool,
+    #[command(flatten)]
+    pub rule: RuleArgs,
     #[command(flatten)]
     pub common: Common,
 }
@@ -241,11 +259,92 @@ pub struct CheckArgs {
     /// The mesh or scene to check.
     pub input: PathBuf,
     #[command(flatten)]
+    pub rule: RuleArgs,
+    /// Tell walls thinner than this, mm.
+    #[arg(long, value_name = "MM", default_value = "0.4", value_parser = length)]
+    pub thin_wall: f64,
+    /// A picture to write, a .png file, that shows the shape from below: what leans out too far in orange to red,
+    /// what comes close in blue.
+    #[arg(long, value_name = "OUT.png")]
+    pub picture: Option<PathBuf>,
+    #[command(flatten)]
     pub reading: ReadingArgs,
     #[command(flatten)]
     pub resolution: ResolutionArgs,
     #[command(flatten)]
     pub common: Common,
+}
+
+/// `trullo slice`.
+#[derive(Debug, Args)]
+pub struct SliceArgs {
+    /// The mesh or scene to slice.
+    pub input: PathBuf,
+    /// The .svg file or the folder to write. A folder must be new or empty.
+    #[arg(short, long, value_name = "DIR|FILE.svg")]
+    pub output: PathBuf,
+    /// Height of a layer, mm.
+    #[arg(long, value_name = "MM", default_value = "0.25", value_parser = layer_height)]
+    pub layer_height: LayerHeight,
+    /// Where the first layer begins.
+    #[arg(long, value_enum, default_value_t)]
+    pub bed: Bed,
+    /// What the files in a folder are.
+    #[arg(long = "as", value_name = "KIND", value_enum, default_value_t)]
+    pub kind: LayerKind,
+    /// How wide a pixel of a PNG file is, mm.
+    #[arg(long, value_name = "MM", default_value = "0.1", value_parser = length)]
+    pub pixel: f64,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    #[command(flatten)]
+    pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// What the files of layers are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum LayerKind {
+    /// Outlines in mm.
+    #[default]
+    Svg,
+    /// Pictures, white where the layer is solid.
+    Png,
+}
+
+/// Where the bed is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Bed {
+    /// Under the lowest point of the shape.
+    #[default]
+    Lowest,
+    /// At z = 0: what begins above it floats, what is below it is not printed.
+    Zero,
+}
+
+impl From<Bed> for Bottom {
+    fn from(bed: Bed) -> Self {
+        match bed {
+            Bed::Lowest => Self::LowestPoint,
+            Bed::Zero => Self::Bed,
+        }
+    }
+}
+
+/// What a printer can make without supports.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct RuleArgs {
+    /// Height of a layer, mm: 0.02 to 2 [default: that of the file's certificate, else 0.25].
+    #[arg(long, value_name = "MM", value_parser = layer_height)]
+    pub layer_height: Option<LayerHeight>,
+    /// Largest overhang that prints without supports, degrees from the vertical: 20 to 70 [default: that of the
+    /// file's certificate, else 45].
+    #[arg(long, value_name = "DEG", value_parser = overhang)]
+    pub max_overhang: Option<OverhangAngle>,
+    /// Where the first layer begins [default: as in the file's certificate, else lowest].
+    #[arg(long, value_enum)]
+    pub bed: Option<Bed>,
 }
 
 /// How meshes are read.
@@ -298,6 +397,7 @@ impl Verb {
             Self::Convert(a) => a.common,
             Self::Render(a) => a.common,
             Self::Check(a) => a.common,
+            Self::Slice(a) => a.common,
         }
     }
 }
@@ -321,6 +421,16 @@ fn length(text: &str) -> Result<f64, String> {
 fn coordinate(text: &str) -> Result<f64, String> {
     let legal = text.parse().ok().filter(|mm: &f64| mm.abs() <= 1e5);
     legal.ok_or_else(|| "a coordinate is a number of millimetres from -100000 to 100000".to_owned())
+}
+
+fn layer_height(text: &str) -> Result<LayerHeight, String> {
+    let mm = text.parse().map_err(|_| "a layer height is a number of millimetres, such as 0.2".to_owned())?;
+    LayerHeight::from_mm(mm).map_err(|e| e.to_string())
+}
+
+fn overhang(text: &str) -> Result<OverhangAngle, String> {
+    let degrees = text.parse().map_err(|_| "an overhang is a number of degrees, such as 45".to_owned())?;
+    OverhangAngle::from_degrees(degrees).map_err(|e| e.to_string())
 }
 
 fn share(text: &str) -> Result<f32, String> {

@@ -1,6 +1,7 @@
 //! One command's work: its stages, their times, and how it is stopped.
 
 use crate::failure::Failure;
+use crate::folder::MakeFile;
 use crate::progress::Meter;
 use crate::timings::Timings;
 use polygonizer::Cancel;
@@ -47,6 +48,16 @@ impl<'a> Job<'a> {
         let result = crate::output::write_file(path, content, self.cancel);
         self.timings.note("write", start.elapsed());
         result
+    }
+
+    /// Makes `count` files and writes them as a new folder: it is all there or not at all. Stage "write".
+    pub fn write_folder(
+        &mut self,
+        path: &std::path::Path,
+        count: usize,
+        make: &MakeFile,
+    ) -> Result<(), Failure> {
+        self.stage("write", |watch| crate::folder::write(path, count, make, watch))
     }
 }
 

@@ -1,17 +1,22 @@
 //! Trullo on the command line: reads arguments, opens files, asks the other rooms, and shows what they say.
 
+mod certificate;
 mod cli;
 mod drawing;
 mod failure;
 mod field_picture;
+mod folder;
 mod input;
 mod job;
+mod layer_files;
 mod meshing;
 mod output;
 mod preview;
+mod print_report;
 mod progress;
 mod render;
 mod resolution;
+mod slicing;
 mod timings;
 mod verbs;
 
@@ -93,6 +98,7 @@ fn run(verb: &Verb, cancel: &Cancel) -> Result<(Report, Timings), Failure> {
                 Verb::Convert(args) => verbs::convert::run(args, &mut job),
                 Verb::Render(args) => verbs::render::run(args, &mut job),
                 Verb::Check(args) => verbs::check::run(args, &mut job),
+                Verb::Slice(args) => verbs::slice::run(args, &mut job),
             }
         })?;
     }

@@ -32,6 +32,14 @@ impl Report {
         self.json.insert(key.into(), value.into());
     }
 
+    /// Adds all that another report says.
+    pub fn append(&mut self, other: Self) {
+        self.text.push_str(&other.text);
+        self.json.extend(other.json);
+        self.notices.extend(other.notices);
+        self.found |= other.found;
+    }
+
     /// Adds a line for people.
     pub fn line(&mut self, line: impl AsRef<str>) {
         self.text.push_str(line.as_ref());
@@ -95,6 +103,14 @@ fn print(text: &str) {
 /// Writes to stderr; where even that fails there is nobody left to tell.
 fn complain(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Errors: a picture whose name does not end in `.png`.
+pub fn check_is_png(path: &Path) -> Result<(), Failure> {
+    match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        true => Ok(()),
+        false => Err(Failure::of(path, "the name must end in .png, the only format for pictures")),
+    }
 }
 
 /// Whether a file could be written at `path`, found out before long work begins. Leaves no trace.

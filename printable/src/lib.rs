@@ -11,6 +11,8 @@
 //! with S(k) the slice of layer k and B(r) a disc. Whatever lies on the bed is supported. [`SupportRule`] is
 //! that rule with its two numbers.
 
+pub mod check;
 mod rule;
+pub mod slices;
 
 pub use rule::{LayerHeight, OverhangAngle, RuleError, SupportRule};

@@ -26,6 +26,9 @@ impl View {
         ("bottom", [0.0, -90.0]),
     ];
 
+    /// From the front, the right and below: 35° around and 30° up.
+    pub const FROM_BELOW: Self = Self { azimuth: 0.611, elevation: -0.524 };
+
     /// From degrees.
     pub fn from_degrees(azimuth: f32, elevation: f32) -> Self {
         Self { azimuth: azimuth.to_radians(), elevation: elevation.to_radians() }

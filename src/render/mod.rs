@@ -5,6 +5,7 @@
 mod buffer;
 mod camera;
 mod cast;
+mod paint;
 mod palette;
 mod raster;
 mod shade;
@@ -19,6 +20,7 @@ use buffer::{Buffer, Frame, Kind, RAYS, Sample};
 use camera::Camera;
 use glam::Vec3;
 use mesh::Mesh;
+use paint::Paint;
 use palette::{Palette, STONE};
 use raster::Shaded;
 use shade::{KEY_FROM, Stage};
@@ -39,6 +41,8 @@ pub enum Subject<'a> {
     Scene(&'a NodeRef),
     /// A mesh whose indices all exist.
     Mesh(&'a Mesh),
+    /// Such a mesh tinted by its overhangs, with the largest that prints, radians from the vertical.
+    Overhangs(&'a Mesh, f32),
 }
 
 /// How it is drawn.
@@ -104,14 +108,18 @@ pub fn png(pixels: &[u8], [width, height]: [u32; 2]) -> Result<Vec<u8>, png::Enc
 /// A subject with what every picture of it needs.
 enum Prepared<'a> {
     Scene(&'a NodeRef),
-    Mesh(Shaded<'a>, &'a Mesh),
+    Mesh(Shaded<'a>, &'a Mesh, Paint),
 }
 
 impl<'a> Prepared<'a> {
     fn new(subject: &Subject<'a>) -> Self {
         match subject {
             Subject::Scene(root) => Self::Scene(root),
-            Subject::Mesh(mesh) => Self::Mesh(Shaded::new(mesh), mesh),
+            Subject::Mesh(mesh) => Self::Mesh(Shaded::new(mesh), mesh, Paint::Plain(STONE.0)),
+            Subject::Overhangs(mesh, limit) => {
+                let paint = Paint::Overhangs { limit: *limit, bed: mesh.bounds().min.z };
+                Self::Mesh(Shaded::new(mesh), mesh, paint)
+            }
         }
     }
 
@@ -119,7 +127,7 @@ impl<'a> Prepared<'a> {
     fn bounds(&self, camera: Option<&Camera>) -> Aabb {
         match self {
             Self::Scene(root) => solid_box(&Tree::new(&seen_by(root, camera))),
-            Self::Mesh(_, mesh) => {
+            Self::Mesh(_, mesh, _) => {
                 let used = mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]);
                 match camera {
                     Some(camera) => Aabb::of_points(used.map(|p| camera.point_from_world(p))),
@@ -142,7 +150,7 @@ impl<'a> Prepared<'a> {
                 }
                 cast::cast(&tree, solid, &Palette::new(&root), frame, watch)
             }
-            Self::Mesh(shaded, _) => shaded.draw(camera, STONE.0, frame, watch),
+            Self::Mesh(shaded, _, paint) => shaded.draw(camera, *paint, frame, watch),
         }
     }
 }

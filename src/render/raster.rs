@@ -2,6 +2,7 @@
 
 use super::buffer::{Buffer, Frame, Kind, Sample};
 use super::camera::Camera;
+use super::paint::Paint;
 use crate::failure::Failure;
 use crate::job::Watch;
 use glam::{Vec2, Vec3};
@@ -54,7 +55,7 @@ impl<'a> Shaded<'a> {
     pub fn draw(
         &self,
         camera: &Camera,
-        color: [u8; 3],
+        paint: Paint,
         frame: Frame,
         watch: &Watch,
     ) -> Result<Buffer, Failure> {
@@ -68,6 +69,7 @@ impl<'a> Shaded<'a> {
                 let corners = self.mesh.triangles[t as usize].map(|v| v as usize);
                 let spot = Spot::new(corners.map(|v| places[v]), corners.map(|v| points[v].z));
                 let normals = self.normals[t as usize].map(|n| camera.direction_from_world(n));
+                let color = paint.of(corners.map(|v| self.mesh.positions[v]));
                 spot.draw(normals, color, band * BAND, frame, samples);
             }
         });

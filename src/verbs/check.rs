@@ -1,27 +1,41 @@
-//! `trullo check`: is it a solid, and what does it measure?
+//! `trullo check`: is it a solid, does it print without supports, and what does it measure?
 
 use crate::cli::CheckArgs;
 use crate::failure::Failure;
 use crate::input::{self, Input, Prefer};
 use crate::job::Job;
 use crate::meshing::{self, is_serious};
-use crate::output::{Report, counted, long_vector, number, vector};
+use crate::output::{Report, check_is_png, check_writable, counted, long_vector, number, vector};
+use crate::render::{self, Settings, Subject, View};
+use crate::{certificate, print_report, slicing};
+use mesh::io::Attachments;
 use mesh::{Body, Fault, Finding, Mesh, SelfIntersections, Validity};
+use printable::check::CheckSettings;
 use serde_json::{Value, json};
+use std::path::Path;
+
+/// Width and height of a picture of overhangs, pixels.
+const PICTURE_SIZE: [u32; 2] = [1200, 900];
 
 /// Checks a mesh, or the mesh of a scene.
 ///
-/// Errors: an input that cannot be read or meshed. What is wrong with the mesh is in the report.
+/// Errors: an input that cannot be read or meshed, a picture that cannot be written. What is wrong with the mesh is
+/// in the report.
 pub fn run(args: &CheckArgs, job: &mut Job) -> Result<Report, Failure> {
     let mut report = Report::default();
-    let mesh = match input::open(&args.input, args.reading.height, Prefer::Mesh, job, &mut report)? {
-        Input::Mesh(loaded) => loaded.mesh,
-        Input::Scene(scene) => {
-            let meshed = meshing::mesh_scene(&args.input, &scene, &args.resolution, job)?;
-            report.put("cell_mm", number(meshed.cell_mm));
-            meshed.mesh
-        }
-    };
+    if let Some(picture) = &args.picture {
+        check_is_png(picture)?;
+        check_writable(picture)?;
+    }
+    let (mesh, attachments) =
+        match input::open(&args.input, args.reading.height, Prefer::Mesh, job, &mut report)? {
+            Input::Mesh(loaded) => (loaded.mesh, loaded.attachments),
+            Input::Scene(scene) => {
+                let meshed = meshing::mesh_scene(&args.input, &scene, &args.resolution, job)?;
+                report.put("cell_mm", number(meshed.cell_mm));
+                (meshed.mesh, Attachments::default())
+            }
+        };
     let validity = job.stage("validate", |_| Ok(mesh.validity(SelfIntersections::Search)))?;
     let bodies = job.stage("measure", |_| {
         tell_measures(&mut report, &mesh);
@@ -29,7 +43,59 @@ pub fn run(args: &CheckArgs, job: &mut Job) -> Result<Report, Failure> {
     })?;
     tell_bodies(&mut report, &bodies, &validity);
     tell_findings(&mut report, &validity);
+    check_print(args, &mesh, &attachments, &mut report, job)?;
+    report.put("ok", !report.found);
     Ok(report)
+}
+
+/// Checks whether the mesh prints without supports, and whether a certificate says so rightly.
+fn check_print(
+    args: &CheckArgs,
+    mesh: &Mesh,
+    attachments: &Attachments,
+    report: &mut Report,
+    job: &mut Job,
+) -> Result<(), Failure> {
+    let certificate = certificate::of_file(attachments);
+    let claimed = certificate.as_ref().and_then(|certificate| certificate.as_ref().ok());
+    let mut settings = certificate::settings(&args.rule, claimed);
+    settings.thin_wall_mm = args.thin_wall;
+    let check = slicing::check(mesh, &settings, job)?;
+    match &check {
+        Ok(check) => print_report::tell(report, check),
+        Err(error) => {
+            report.found = true;
+            report.line(format!("problem         not sliced: {error}"));
+            report.put("print", json!({ "error": error.to_string() }));
+        }
+    }
+    if let Some(certificate) = &certificate {
+        certificate::verify(certificate, mesh, check.as_ref().ok(), report, job)?;
+    }
+    match &args.picture {
+        Some(picture) => draw(args, mesh, &settings, picture, report, job),
+        None => Ok(()),
+    }
+}
+
+/// Draws the mesh from below, tinted by its overhangs.
+fn draw(
+    args: &CheckArgs,
+    mesh: &Mesh,
+    settings: &CheckSettings,
+    picture: &Path,
+    report: &mut Report,
+    job: &mut Job,
+) -> Result<(), Failure> {
+    let subject = Subject::Overhangs(mesh, settings.rule.overhang.radians());
+    let look = Settings { view: View::FROM_BELOW, size: PICTURE_SIZE, background: None };
+    let pixels = render::picture(&subject, &look, job)?;
+    let pixels = pixels.ok_or_else(|| Failure::of(&args.input, "there is nothing to see"))?;
+    let bytes =
+        job.stage("encode", |_| render::png(&pixels, PICTURE_SIZE).map_err(|e| Failure::of(picture, e)))?;
+    job.write(picture, &bytes)?;
+    report.put("picture", picture.display().to_string());
+    Ok(())
 }
 
 fn tell_measures(report: &mut Report, mesh: &Mesh) {
@@ -98,7 +164,7 @@ fn tell_findings(report: &mut Report, validity: &Validity) {
     report.put("closed", validity.is_closed());
     report.put("edge_manifold", validity.is_edge_manifold());
     report.put("oriented", validity.is_oriented());
-    report.put("ok", !report.found);
+    report.put("solid", !report.found);
     let findings = faults.iter().map(|&fault| {
         let places = validity.findings().filter(|f| f.fault == fault).map(place);
         json!({

@@ -5,7 +5,8 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::meshing::{self, Meshed};
 use crate::output::{Report, check_writable, counted, number, vector};
-use crate::{input, output};
+use crate::{certificate, input, output};
+use mesh::io::Format;
 use mesh::simplify;
 use serde_json::json;
 use std::path::Path;
@@ -15,7 +16,10 @@ use std::path::Path;
 /// Errors: a scene that cannot be read or meshed, a file that cannot be written.
 pub fn run(args: &MeshArgs, job: &mut Job) -> Result<Report, Failure> {
     let mut report = Report::default();
-    meshing::format_of_output(&args.output)?;
+    let format = meshing::format_of_output(&args.output)?;
+    if args.certify && format != Format::ThreeMf {
+        return Err(Failure::of(&args.output, "only .3mf files carry certificates; --certify needs one"));
+    }
     check_writable(&args.output)?;
     let scene = input::open_scene(&args.scene, job)?;
     let mut meshed = meshing::mesh_scene(&args.scene, &scene, &args.resolution, job)?;
@@ -24,9 +28,15 @@ pub fn run(args: &MeshArgs, job: &mut Job) -> Result<Report, Failure> {
             simplify(&meshed.mesh, tolerance, &|| watch.cancel.is_cancelled()).ok_or(Failure::Interrupted)
         })?;
     }
-    let attachments = input::attachments(&args.scene, &scene)?;
+    let mut attachments = input::attachments(&args.scene, &scene)?;
+    let mut certified = Report::default();
+    if args.certify {
+        let (mesh, rule) = (&meshed.mesh, &args.rule);
+        certificate::certify(&args.scene, mesh, rule, &mut attachments, &mut certified, job)?;
+    }
     meshing::write_mesh(&args.scene, &args.output, &meshed.mesh, &attachments, job)?;
     tell(&mut report, &args.output, &meshed);
+    report.append(certified);
     Ok(report)
 }
 

@@ -6,4 +6,5 @@ pub mod eval;
 pub mod mesh;
 pub mod render;
 pub mod sketch;
+pub mod slice;
 pub mod tree;

@@ -4,7 +4,7 @@ use crate::cli::RenderArgs;
 use crate::failure::Failure;
 use crate::input::{self, Input, Prefer};
 use crate::job::Job;
-use crate::output::{Report, check_writable};
+use crate::output::{Report, check_is_png, check_writable};
 use crate::render::{self, Settings, Subject};
 
 /// Draws the input and writes a PNG file.
@@ -12,9 +12,7 @@ use crate::render::{self, Settings, Subject};
 /// Errors: an input that cannot be read or has nothing to see, a file that cannot be written.
 pub fn run(args: &RenderArgs, job: &mut Job) -> Result<Report, Failure> {
     let mut report = Report::default();
-    if !args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(Failure::of(&args.output, "the name must end in .png, the only format for pictures"));
-    }
+    check_is_png(&args.output)?;
     check_writable(&args.output)?;
     let input = input::open(&args.input, args.reading.height, Prefer::Scene, job, &mut report)?;
     let subject = match &input {
