@@ -20,7 +20,7 @@ const CPU_SECONDS: u32 = 2;
 /// On the clock, on a machine that has other things to do.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-const VERBS: [&str; 6] = ["eval", "tree", "mesh", "check", "convert", "render"];
+const VERBS: [&str; 7] = ["eval", "tree", "mesh", "check", "convert", "render", "slice"];
 
 /// What came of some of the files.
 #[derive(Default)]
@@ -64,13 +64,19 @@ fn three_hundred_broken_files_end_in_an_error_that_names_the_file() {
 /// Runs a verb on a file and judges how it ended: whether the file was refused, and how long that took.
 fn try_file(folder: &Folder, file: &Broken, verb: &str) -> (bool, Duration) {
     let name = file.name.as_str();
-    let out = format!("out-{verb}-{name}.{}", if verb == "render" { "png" } else { "stl" });
+    let format = match verb {
+        "render" => "png",
+        "slice" => "svg",
+        _ => "stl",
+    };
+    let out = format!("out-{verb}-{name}.{format}");
     let rest: &[&str] = match verb {
         "eval" => &["--at", "0,0,5", "--explain"],
         "mesh" => &["-o", &out, "--cells", "16"],
         "convert" => &[&out, "--cells", "16"],
         "render" => &["-o", &out, "--size", "64x48"],
         "check" => &["--cells", "16"],
+        "slice" => &["-o", &out, "--cells", "16"],
         _ => &[],
     };
     let limits = format!("ulimit -v {MEMORY_KIB}; ulimit -t {CPU_SECONDS}; exec \"$@\"");

@@ -114,12 +114,17 @@ fn usage_errors_end_with_two_and_help_with_nought() {
         &["mesh", "s.trullo", "-o", "s.stl", "--cell", "0"],
         &["check", "s.trullo", "--threads", "0"],
         &["render", "s.trullo", "-o", "s.png", "--size", "1x1"],
+        &["check", "s.trullo", "--layer-height", "0"],
+        &["check", "s.trullo", "--layer-height", "NaN"],
+        &["check", "s.trullo", "--max-overhang", "85"],
+        &["slice", "s.trullo", "-o", "s.svg", "--layer-height", "inf"],
+        &["slice", "s.trullo", "-o", "s.svg", "--as", "png"],
     ] {
         assert_eq!(folder.trullo(wrong).status.code(), Some(2), "{wrong:?}");
     }
     let out = folder.trullo(&["eval", "s.trullo", "--at", "1,2", "--json"]);
     assert!(json_of(&out)["error"].as_str().is_some_and(|e| e.contains("three numbers")));
-    for verb in ["eval", "tree", "mesh", "convert", "render", "check"] {
+    for verb in ["eval", "tree", "mesh", "convert", "render", "check", "slice"] {
         let out = folder.trullo(&[verb, "--help"]);
         assert_eq!(out.status.code(), Some(0), "{verb}");
         assert!(text_of(&out.stdout).contains("Example: trullo "), "{verb}");

@@ -5,6 +5,7 @@
 mod doodles;
 mod models;
 mod peer_scenes;
+mod print_check;
 mod slicer;
 
 use std::path::{Path, PathBuf};

@@ -22,6 +22,8 @@ pub struct Finding {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {
+    /// No layer has any area: the part is flat, thinner than a layer everywhere, or not closed.
+    Nothing,
     /// An outline does not close, so its layer is incomplete.
     OpenOutline,
     /// A region with nothing below it.
@@ -67,12 +69,16 @@ pub enum Kind {
 impl Kind {
     /// Whether it keeps the part from being printed without supports; the others are good to know.
     pub fn is_serious(&self) -> bool {
-        matches!(self, Self::OpenOutline | Self::Island { .. } | Self::Hangs { serious: true, .. })
+        matches!(
+            self,
+            Self::Nothing | Self::OpenOutline | Self::Island { .. } | Self::Hangs { serious: true, .. }
+        )
     }
 
     /// A short name for programs.
     pub fn name(&self) -> &'static str {
         match self {
+            Self::Nothing => "nothing",
             Self::OpenOutline => "open_outline",
             Self::Island { .. } => "island",
             Self::Hangs { .. } => "hangs",
@@ -92,6 +98,7 @@ impl fmt::Display for Finding {
             None => write!(f, "at ({x:.2}, {y:.2}, {z:.2}): ")?,
         }
         match self.kind {
+            Kind::Nothing => f.write_str("no layer has any area; is the unit right?"),
             Kind::OpenOutline => f.write_str("the outline does not close; the mesh has a hole there"),
             Kind::Island { area } => write!(f, "an island of {area:.2} mm² begins with nothing below it"),
             Kind::Hangs { area, excess, .. } => {
@@ -132,7 +139,9 @@ pub(super) fn findings(check: &PrintCheck, spots: &[Spot], open: &[(usize, DVec3
         let serious = check.layers[spot.layer].unsupported > LAYER_TOLERANCE;
         at(spot, Kind::Hangs { area: spot.area, excess: spot.excess.unwrap_or(0.0), serious })
     });
-    let mut all: Vec<Finding> = open.chain(islands).chain(hanging).collect();
+    let nothing = Finding { kind: Kind::Nothing, layer: None, place: check.stance.foot };
+    let nothing = check.is_empty().then_some(nothing).into_iter();
+    let mut all: Vec<Finding> = nothing.chain(open).chain(islands).chain(hanging).collect();
     all.extend(steep(check));
     all.extend(falls_over(check));
     all.extend(thin_wall(check, settings));

@@ -179,10 +179,19 @@ impl PrintCheck {
         self.spots.iter().filter_map(|spot| spot.excess).fold(0.0, f64::max)
     }
 
+    /// Whether no layer has any area.
+    pub fn is_empty(&self) -> bool {
+        self.layers.iter().all(|layer| layer.area == 0.0)
+    }
+
     /// Whether every layer holds the next, but for what prints tolerate: no islands, and nowhere more than
-    /// [`LAYER_TOLERANCE`] in one layer. All layers must be complete.
+    /// [`LAYER_TOLERANCE`] in one layer. All layers must be complete, and not all may be empty.
     pub fn is_printable(&self) -> bool {
-        self.layers.iter().all(|l| l.islands == 0 && l.open_outlines == 0 && l.unsupported <= LAYER_TOLERANCE)
+        !self.is_empty()
+            && self
+                .layers
+                .iter()
+                .all(|l| l.islands == 0 && l.open_outlines == 0 && l.unsupported <= LAYER_TOLERANCE)
     }
 
     /// Whether every layer holds the next: as [`Self::is_printable`], with no more than [`PART_TOLERANCE`] in all

@@ -7,6 +7,8 @@ use mesh::{Mass, Mesh};
 /// How a part stands: its contact with the bed and where its weight is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stance {
+    /// The middle of the part's box, on the bed, mm.
+    pub foot: DVec3,
     /// Area of the part just above the bed, mm².
     pub contact: f64,
     /// Area of the convex hull of all contact, the support polygon, mm².
@@ -34,6 +36,7 @@ pub(super) fn stance(mesh: &Mesh, bottom: f64, contact_mm: f64) -> Result<Stance
     let margin = centre.and_then(|centre| margin(&hull, centre.truncate()));
     let lever = centre.map(|centre| centre.z - bottom).filter(|&lever| lever > 0.0);
     Ok(Stance {
+        foot: mesh.bounds().centre().with_z(bottom),
         contact: grid.square_mm(clip::total(&layer.regions)),
         base: area(&hull),
         centre,
