@@ -11,8 +11,19 @@
 //! with S(k) the slice of layer k and B(r) a disc. Whatever lies on the bed is supported. [`SupportRule`] is
 //! that rule with its two numbers.
 
+mod brush;
 pub mod check;
 mod rule;
 pub mod slices;
+mod support;
+mod voxels;
 
+pub use brush::{
+    Action, Brush, Dab, DabError, MAX_DABS, PressureRange, StrokeSample, StrokeShape, Tip, stroke,
+};
 pub use rule::{LayerHeight, OverhangAngle, RuleError, SupportRule};
+pub use support::{
+    Changes, Element, ElementError, GroundPaths, PathCost, PathMap, Paths, UnderBed, Why, add_supported,
+    grow, preserve, smooth, trim, trim_with_changes, unsupported,
+};
+pub use voxels::{GridShape, MAX_VOXELS, VoxelError, VoxelGrid, VoxelSize};
