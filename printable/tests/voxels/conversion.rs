@@ -58,7 +58,7 @@ fn a_large_support_does_not_count_as_a_large_solid() {
 #[test]
 fn what_is_too_large_below_the_bed_floating_or_empty_is_refused_with_the_remedy() {
     let size = size(0.25, 0.25);
-    let of = |node: blobtree::Node| VoxelGrid::from_field(&Tree::new(&node.into()), size);
+    let of = |node: blobtree::Node| VoxelGrid::from_field(&Tree::new(&node), size);
     let Err(VoxelError::TooLarge { factor, .. }) = of(point([0., 0., 100.], 100.)) else {
         panic!("200 mm fit")
     };
@@ -121,7 +121,7 @@ fn columns_through_corners_and_edges_count_once() {
     let block = shapes::cuboid(Vec3::new(0.5, 0.5, 0.), Vec3::new(8.5, 8.5, 8.));
     let grid = VoxelGrid::from_mesh(&block, size(1.0, 1.0)).expect("on the bed");
     assert_eq!(grid.count(), 8 * 8 * 8);
-    let mut pair = block.clone();
+    let mut pair = block;
     pair.append(&shapes::cuboid(Vec3::new(8.5, 0.5, 0.), Vec3::new(16.5, 8.5, 8.)));
     assert_eq!(VoxelGrid::from_mesh(&pair, size(1.0, 1.0)).expect("on the bed").count(), 16 * 8 * 8);
 }
