@@ -302,7 +302,8 @@ fn fewest(shape: &Shape, noise: f64) -> usize {
         "rounded square" | "star" | "crescent" | "figure of eight" => 250,
         _ => 700,
     };
-    if noise > 0. && !is_round(shape) { clean.max(700) } else { clean.max((noise * 6000.) as usize) }
+    let many = noise > 0.01 || noise > 0. && shape.name == "figure of eight";
+    if many && !is_round(shape) { clean.max(700) } else { clean.max((noise * 6000.) as usize) }
 }
 
 /// A band of a twentieth has no ends left in noise that is nearly as wide.
@@ -312,13 +313,9 @@ fn most_noise(shape: &Shape) -> f64 {
 
 const COUNTS: [usize; 5] = [30, 120, 250, 700, 2000];
 
-/// The lobes of an eight are held apart where they would touch, and the ends of a narrow band are short sides.
+/// The lobes of an eight are held apart where they would touch.
 fn clean_tolerance(shape: &Shape) -> f64 {
-    match shape.name {
-        "figure of eight" => 0.01,
-        "spiral" => 0.0075,
-        _ => 0.005,
-    }
+    if shape.name == "figure of eight" { 0.01 } else { 0.005 }
 }
 
 #[test]

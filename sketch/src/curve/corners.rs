@@ -6,6 +6,11 @@ use glam::DVec2;
 /// How far the directions of the two sides are taken, in extents of the contour, where nothing shakes. Shorter,
 /// and single samples of a simplified line are corners; longer, and the tips of slim ellipses are.
 const REACH: f64 = 0.025;
+/// With more noise than this, in extents, a direction needs
+const STEADY: f64 = 5e-4;
+/// at least so many samples, but no more than this length, in extents: longer, and the tips of ellipses are corners.
+const LEAST_IN_REACH: f64 = 5.;
+const FARTHEST_FOR_THAT: f64 = 0.06;
 /// The same where only the places are kept at which the line bends: two or three of them make a blunt tip.
 const SPARSE_REACH: f64 = 0.04;
 /// The least turn of a corner, radians: a heptagon's corners are, a circle of nine samples has none.
@@ -140,7 +145,9 @@ pub(super) fn meeting(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> Option<DVec2> {
 /// prolonged, meet on the line rather than beyond it.
 pub(super) fn find(line: &Closed, wishes: &Wishes) -> Vec<usize> {
     let reach = if line.sparse { SPARSE_REACH } else { REACH };
-    let reach = (reach * line.extent).max(10. * line.noise).min(line.around() / 8.);
+    let for_samples = (LEAST_IN_REACH * line.spacing()).min(FARTHEST_FOR_THAT * line.extent);
+    let shaking = if line.noise > STEADY * line.extent { for_samples } else { 0. };
+    let reach = (reach * line.extent).max(10. * line.noise).max(shaking).min(line.around() / 8.);
     let in_reach = (reach / line.spacing()).max(1.);
     let shaky = 2.5 * line.noise / reach * (12. / in_reach).sqrt();
     let mut candidates: Vec<Candidate> = (0..line.samples.len())

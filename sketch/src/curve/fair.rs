@@ -156,24 +156,23 @@ fn without_cut_tips(run: Vec<Sample>, reach: f64) -> Vec<Sample> {
     run[from..=to].to_vec()
 }
 
+/// Each run by itself: a straight side bears far more smoothing than a bent one.
 fn least_expected_error(sides: &Sides) -> Vec<Vec<DVec2>> {
-    let closed = sides.corners.is_empty();
     let around: f64 = sides.runs.iter().map(|run| super::line::length(run)).sum();
     let weight: f64 = sides.runs.iter().flatten().map(|sample| sample.weight).sum();
     let density = weight / around.max(1e-9);
-    let mut best: Option<(f64, Vec<Vec<DVec2>>)> = None;
+    sides.runs.iter().map(|run| least_expected_error_of(run, density, sides)).collect()
+}
+
+fn least_expected_error_of(run: &[Sample], density: f64, sides: &Sides) -> Vec<DVec2> {
+    let closed = sides.corners.is_empty();
+    let around = super::line::length(run);
+    let mut best: Option<(f64, Vec<DVec2>)> = None;
     for length in LENGTHS.map(|length| length * sides.extent) {
-        let smooth: Vec<Vec<DVec2>> =
-            sides.runs.iter().map(|run| smoothed(run, length, density, sides.extent, closed)).collect();
-        let misfit: f64 = sides
-            .runs
-            .iter()
-            .flatten()
-            .zip(smooth.iter().flatten())
-            .map(|(sample, place)| sample.weight * sample.at.distance_squared(*place))
-            .sum();
-        let freedom = around / (8f64.sqrt() * length) + 2. * sides.runs.len() as f64;
-        let error = misfit + 4. * sides.noise * sides.noise * freedom;
+        let smooth = smoothed(run, length, density, sides.extent, closed);
+        let squares = run.iter().zip(&smooth).map(|(s, place)| s.weight * s.at.distance_squared(*place));
+        let freedom = around / (8f64.sqrt() * length) + 2.;
+        let error = squares.sum::<f64>() + 4. * sides.noise * sides.noise * freedom;
         match &best {
             Some((least, _)) if error > 1.5 * least => break,
             Some((least, _)) if error >= *least => {}

@@ -12,6 +12,7 @@ mod corners;
 mod fair;
 mod groups;
 mod line;
+mod lobes;
 mod outline;
 mod polygon;
 mod raster;

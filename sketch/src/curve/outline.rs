@@ -6,6 +6,7 @@ use super::corners::Wishes;
 use super::fair::{fair, turned};
 use super::groups::groups;
 use super::line::Line;
+use super::lobes::lobes;
 use super::polygon;
 use super::silhouette::{PENS, WIDE_PENS, silhouettes};
 use super::{Contour, NoOutline};
@@ -126,6 +127,11 @@ impl<'a> Group<'a> {
         let Some((chain, contour)) = self.single_loop(wishes) else {
             return self.filled(wishes, &PENS);
         };
+        if !is_simple(&contour) {
+            let lobes = lobes(&contour).filter(|_| self.chains.len() == 1);
+            let both = |lobes: [Contour; 2]| Outline { contours: lobes.into(), used: chain.strokes.clone() };
+            return lobes.map_or_else(|| self.filled(wishes, &PENS), both);
+        }
         if self.chains.len() == 1 {
             return Outline { contours: vec![contour], used: chain.strokes.clone() };
         }
@@ -136,15 +142,14 @@ impl<'a> Group<'a> {
         Outline { contours: vec![contour], used: chain.strokes.clone() }
     }
 
-    /// The contour of the one closed chain, if it does not cross itself.
+    /// The contour of the one closed chain; it may cross itself.
     fn single_loop(&self, wishes: &Wishes) -> Option<(&'a Chain, Contour)> {
         let mut closed = self.chains.iter().filter(|chain| chain.closed);
         let (chain, None) = (closed.next()?, closed.next()) else { return None };
         if super::line::length(&chain.samples) > LONGEST_LOOP * chain.extent() {
             return None;
         }
-        let contour = fair(&chain.samples, wishes)?;
-        is_simple(&contour).then_some((chain, contour))
+        Some((chain, fair(&chain.samples, wishes)?))
     }
 
     fn middle(&self) -> DVec2 {

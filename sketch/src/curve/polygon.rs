@@ -84,6 +84,13 @@ pub(super) fn first_crossing(points: &[DVec2]) -> Option<(usize, usize, DVec2)> 
     nearest.map(|(a, b, at)| (a.min(b), a.max(b), at))
 }
 
+/// As [`first_crossing`], of a polygon that crosses itself once.
+pub(super) fn only_crossing(points: &[DVec2]) -> Option<(usize, usize, DVec2)> {
+    let mut all = crossings(std::iter::once(points));
+    let (a, b, at) = all.next()?;
+    all.next().is_none().then_some((a.min(b), a.max(b), at))
+}
+
 fn crossings<'a>(polygons: impl Iterator<Item = &'a [DVec2]>) -> impl Iterator<Item = (usize, usize, DVec2)> {
     let mut all: Vec<Edge> = polygons
         .enumerate()
