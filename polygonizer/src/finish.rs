@@ -16,12 +16,11 @@ use crate::stitch::stitch;
 use crate::surface::{Entry, GRAIN, PREVIOUS, Surface};
 use crate::workers::run_tasks;
 
+/// Offsets of a brick and those around it.
+const ALL: RangeInclusive<i32> = -1..=1;
+
 /// Offsets of the bricks that may have triangles with a brick's vertices.
 const NEXT: RangeInclusive<i32> = 0..=1;
-
-/// How far from a brick's cells its splits look at the field, in cells: triangles with a vertex in there reach two
-/// cells further, their vertices may have left their cells by one, and the edges that they miss are two from those.
-const SPLITS_SEE: f32 = 5.0;
 
 impl Surface {
     /// The later phases for all bricks.
@@ -36,89 +35,72 @@ impl Surface {
     }
 
     /// The later phases after a change of phase one in the bricks with keys `touched`, and of the field within
-    /// `dirty`. Returns the keys of all that are different now.
+    /// `dirty`: each for the bricks that see something different, as far as the differences spread. Returns the
+    /// keys of all that are different now.
     pub(crate) fn finish_around(
         &mut self,
         field: &dyn Field,
         touched: &[BrickKey],
         dirty: Aabb,
     ) -> Vec<BrickKey> {
-        let (lattice, sees) = (self.lattice(), SPLITS_SEE * self.cell().mm());
-        let feels = |key: BrickKey| lattice.apron(key).grown(sees).overlaps(&dirty);
-        let felt: Vec<BrickKey> = self.bricks.iter().map(|b| b.key).filter(|key| feels(*key)).collect();
-        let near = |reach: RangeInclusive<i32>, felt_reach: RangeInclusive<i32>| {
-            let mut near = self.entries_near(touched, reach);
-            near.extend(self.entries_near(&felt, felt_reach));
-            near.sort_unstable();
-            near.dedup();
-            near
-        };
-        let (proposing, accepting, cut) = (near(-3..=3, 0..=0), near(-4..=4, -1..=1), near(-4..=5, -1..=2));
-        let before: Vec<Entry> = cut.iter().map(|&i| self.bricks[i].clone()).collect();
-        self.settle_alone(&self.entries_near(touched, -1..=1));
-        self.settle_together(&self.entries_near(touched, -2..=2));
-        self.stitch_entries(&self.entries_near(touched, -2..=3));
-        self.propose_splits(field, &proposing);
-        self.accept_splits(&accepting);
-        self.cut_entries(&cut);
-        let differs = |(i, old): &(&usize, &Entry)| {
-            let new = &self.bricks[**i];
-            touched.contains(&new.key) || new.vertices != old.vertices || new.triangles != old.triangles
-        };
-        let different: Vec<BrickKey> =
-            cut.iter().zip(&before).filter(differs).map(|(_, old)| old.key).collect();
+        let mut unsettled = touched.to_vec();
+        unsettled.extend(self.settle_alone(&self.entries_near(touched, ALL)));
+        let mut moved = touched.to_vec();
+        moved.extend(self.settle_together(&self.entries_near(&unsettled, ALL)));
+        let stitched = self.stitch_entries(&self.entries_near(&moved, NEXT));
+        let felt = (0..self.bricks.len()).filter(|&i| self.bricks[i].seen.overlaps(&dirty));
+        let mut splitting = self.entries_near(&moved, ALL);
+        splitting.extend(self.entries_near(&stitched, PREVIOUS));
+        splitting.extend(felt);
+        sort_and_dedup(&mut splitting);
+        let proposed = self.propose_splits(field, &splitting);
+        splitting.extend(self.entries_near(&proposed, ALL));
+        sort_and_dedup(&mut splitting);
+        moved.extend(self.accept_splits(&splitting));
+        let mut different = touched.to_vec();
+        different.extend(self.cut_entries(&self.entries_near(&moved, NEXT)));
         // A chunk also holds vertices of the bricks before it.
         self.entries_near(&different, NEXT).into_iter().map(|i| self.bricks[i].key).collect()
     }
 
     /// The entries whose keys are any of `keys` plus an offset in `offsets` along each axis, ascending.
     fn entries_near(&self, keys: &[BrickKey], offsets: RangeInclusive<i32>) -> Vec<usize> {
-        let near = keys.iter().flat_map(|&[x, y, z]| {
-            let offsets = offsets.clone();
-            offsets.clone().flat_map(move |dx| {
-                let offsets = offsets.clone();
-                offsets.clone().flat_map(move |dy| offsets.clone().map(move |dz| [x + dx, y + dy, z + dz]))
-            })
-        });
-        let mut keys: Vec<BrickKey> = near.collect();
-        keys.sort_unstable();
-        keys.dedup();
-        keys.into_iter().filter_map(|key| self.find(key)).collect()
+        let mut near: Vec<usize> =
+            keys.iter().flat_map(|&key| self.indices_around(key, offsets.clone())).flatten().collect();
+        sort_and_dedup(&mut near);
+        near
     }
 
-    /// The first half of phase two for the entries with these indices: bold vertices on their own.
-    fn settle_alone(&mut self, indices: &[usize]) {
+    /// The first half of phase two for the entries with these indices: bold vertices on their own. This and the
+    /// following return the keys of those entries that are different now.
+    fn settle_alone(&mut self, indices: &[usize]) -> Vec<BrickKey> {
         let alone = self.for_entries(indices, |surface, entry| {
             if entry.surface.bold.is_empty() {
                 return Arc::default();
             }
-            let around = surface.indices_around(entry.key, -1..=1);
+            let around = surface.indices_around(entry.key, ALL);
             let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
             Arc::new(fitting_alone(&surfaces, surface.cell().mm()))
         });
-        for (&i, bold) in indices.iter().zip(alone) {
-            self.bricks[i].bold = bold;
-        }
+        self.renew(indices, alone, |entry, bold| renew(&mut entry.bold, bold))
     }
 
     /// The second half of phase two: bold vertices among others.
-    fn settle_together(&mut self, indices: &[usize]) {
+    fn settle_together(&mut self, indices: &[usize]) -> Vec<BrickKey> {
         let settled = self.for_entries(indices, |surface, entry| {
             if entry.bold.is_empty() {
                 return Arc::clone(&entry.surface.vertices);
             }
-            let around = surface.indices_around(entry.key, -1..=1);
+            let around = surface.indices_around(entry.key, ALL);
             let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
             let bold = around.map(|n| n.map(|n| &surface.bricks[n].bold[..]));
             Arc::new(settle(&surfaces, &bold, surface.cell().mm()))
         });
-        for (&i, vertices) in indices.iter().zip(settled) {
-            self.bricks[i].settled = vertices;
-        }
+        self.renew(indices, settled, |entry, vertices| renew(&mut entry.settled, vertices))
     }
 
     /// Phase three for the entries with these indices, and which of the triangles may cut off edges.
-    fn stitch_entries(&mut self, indices: &[usize]) {
+    fn stitch_entries(&mut self, indices: &[usize]) -> Vec<BrickKey> {
         let stitched = self.for_entries(indices, |surface, entry| {
             let around = surface.indices_around(entry.key, PREVIOUS);
             let surfaces = around.map(|n| n.map(|n| &*surface.bricks[n].surface));
@@ -132,39 +114,37 @@ impl Surface {
             let suspects = suspects(&stitched, surface.cell().mm());
             (Arc::new(triangles), Arc::new(suspects))
         });
-        for (&i, (triangles, suspects)) in indices.iter().zip(stitched) {
-            self.bricks[i].stitched = triangles;
-            self.bricks[i].suspects = suspects;
-        }
+        self.renew(indices, stitched, |entry, (triangles, suspects)| {
+            renew(&mut entry.stitched, triangles) | renew(&mut entry.suspects, suspects)
+        })
     }
 
     /// The first part of phase four: vertices that might be on the lines of the entries with these indices.
-    fn propose_splits(&mut self, field: &dyn Field, indices: &[usize]) {
+    fn propose_splits(&mut self, field: &dyn Field, indices: &[usize]) -> Vec<BrickKey> {
         let run = |(sampler, batch): &mut (Box<dyn Sampler + '_>, Batch), task: usize| {
-            let around = self.indices_around(self.bricks[indices[task]].key, -1..=1);
+            let around = self.indices_around(self.bricks[indices[task]].key, ALL);
             let proposed = propose(&self.stitched(&around), &mut **sampler, self.cell().mm(), batch);
-            Ok::<_, Infallible>(Some(Arc::new(proposed)))
+            Ok::<_, Infallible>(Some(proposed))
         };
         let Ok(all) = run_tasks(indices.len(), GRAIN, || (field.sampler(), Batch::default()), run);
-        for (&i, proposals) in indices.iter().zip(all) {
-            self.bricks[i].proposals = proposals;
-        }
+        self.renew(indices, all, |entry, (proposals, seen)| {
+            entry.seen = seen;
+            renew(&mut entry.proposals, Arc::new(proposals))
+        })
     }
 
     /// The second part of phase four: which of them may be there.
-    fn accept_splits(&mut self, indices: &[usize]) {
+    fn accept_splits(&mut self, indices: &[usize]) -> Vec<BrickKey> {
         let accepted = self.for_entries(indices, |surface, entry| {
-            let around = surface.indices_around(entry.key, -1..=1);
+            let around = surface.indices_around(entry.key, ALL);
             let proposals = around.map(|n| n.map(|n| &surface.bricks[n].proposals[..]));
             Arc::new(accept(&surface.stitched(&around), &proposals, surface.cell().mm()))
         });
-        for (&i, splits) in indices.iter().zip(accepted) {
-            self.bricks[i].splits = splits;
-        }
+        self.renew(indices, accepted, |entry, splits| renew(&mut entry.splits, splits))
     }
 
     /// The third part of phase four: all vertices, and the triangles cut along them.
-    fn cut_entries(&mut self, indices: &[usize]) {
+    fn cut_entries(&mut self, indices: &[usize]) -> Vec<BrickKey> {
         let all = self.for_entries(indices, |surface, entry| {
             let around = surface.indices_around(entry.key, PREVIOUS);
             let splits = around.map(|n| n.map(|n| &surface.bricks[n].splits[..]));
@@ -181,10 +161,9 @@ impl Surface {
             };
             (vertices, triangles)
         });
-        for (&i, (vertices, triangles)) in indices.iter().zip(all) {
-            self.bricks[i].vertices = vertices;
-            self.bricks[i].triangles = triangles;
-        }
+        self.renew(indices, all, |entry, (vertices, triangles)| {
+            renew(&mut entry.vertices, vertices) | renew(&mut entry.triangles, triangles)
+        })
     }
 
     fn stitched(&self, around: &Around<usize>) -> Around<Stitched<'_>> {
@@ -203,4 +182,32 @@ impl Surface {
     fn for_entries<T: Send>(&self, indices: &[usize], work: impl Fn(&Self, &Entry) -> T + Sync) -> Vec<T> {
         indices.par_iter().with_min_len(8).map(|&i| work(self, &self.bricks[i])).collect()
     }
+
+    /// Hands each of these entries its result, and returns the keys of those that `take` says are different now.
+    fn renew<T>(
+        &mut self,
+        indices: &[usize],
+        results: Vec<T>,
+        take: impl Fn(&mut Entry, T) -> bool,
+    ) -> Vec<BrickKey> {
+        let entries = indices.iter().zip(results);
+        entries
+            .filter_map(|(&i, result)| {
+                let entry = &mut self.bricks[i];
+                take(entry, result).then_some(entry.key)
+            })
+            .collect()
+    }
+}
+
+/// Puts `new` in the place of `old`; returns whether it is different.
+fn renew<T: PartialEq>(old: &mut Arc<T>, new: Arc<T>) -> bool {
+    let differs = !Arc::ptr_eq(old, &new) && **old != *new;
+    *old = new;
+    differs
+}
+
+fn sort_and_dedup(indices: &mut Vec<usize>) {
+    indices.sort_unstable();
+    indices.dedup();
 }

@@ -110,16 +110,17 @@ fn is_at_or_after_own(index: usize) -> bool {
     [index % 3, index / 3 % 3, index / 9].into_iter().all(|offset| offset > 0)
 }
 
-/// The best vertices for the lines of the middle brick that cut off edges, ascending by their ends.
+/// The best vertices for the lines of the middle brick that cut off edges, ascending by their ends, and the box in
+/// which the field was looked at for them.
 pub(crate) fn propose(
     around: &Around<Stitched>,
     sampler: &mut dyn Sampler,
     spacing: f32,
     batch: &mut Batch,
-) -> Vec<Split> {
+) -> (Vec<Split>, Aabb) {
     let (faces, lines) = own_suspects(around, spacing);
     if lines.is_empty() {
-        return Vec::new();
+        return (Vec::new(), Aabb::EMPTY);
     }
     let corners = faces.iter().flat_map(|face| face.corners.map(|v| v.position));
     let region = Aabb::of_points(corners).grown(REACH * spacing);
@@ -138,7 +139,7 @@ pub(crate) fn propose(
             None => best.push(proposal),
         }
     }
-    best.into_iter().map(|(_, split)| split).collect()
+    (best.into_iter().map(|(_, split)| split).collect(), region)
 }
 
 /// The place of a vertex and the normals of its faces.

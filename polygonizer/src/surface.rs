@@ -50,6 +50,8 @@ pub(crate) struct Entry {
     /// Those of these triangles that may cut off an edge, vertices that may make up for it, and those that do.
     pub suspects: Arc<Vec<u32>>,
     pub proposals: Arc<Vec<Split>>,
+    /// The box in which the field was looked at for the proposals.
+    pub seen: Aabb,
     pub splits: Arc<Vec<Split>>,
     /// All its vertices, those of cells first, and its triangles.
     pub vertices: Arc<Vec<Vertex>>,
@@ -315,6 +317,7 @@ impl Entry {
             stitched: Arc::default(),
             suspects: Arc::default(),
             proposals: Arc::default(),
+            seen: Aabb::EMPTY,
             splits: Arc::default(),
             vertices: Arc::clone(&surface.vertices),
             triangles: Arc::default(),
