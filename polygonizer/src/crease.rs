@@ -89,7 +89,8 @@ pub(crate) fn cut_off(
     chords.iter().map(|chord| (chord.line, vertex(chord))).collect()
 }
 
-/// The edges that the faces at the ends have, for lines that leave the surface.
+/// The edges that the faces at the ends have, for lines that leave the surface and do not pass over a single smooth
+/// piece of the field.
 fn first_look(sampler: &mut dyn Sampler, lines: &[[End; 2]], spacing: f32, batch: &mut Batch) -> Vec<Chord> {
     batch.points.clear();
     for [a, b] in lines {
@@ -100,7 +101,8 @@ fn first_look(sampler: &mut dyn Sampler, lines: &[[End; 2]], spacing: f32, batch
     let mut chords = Vec::new();
     for ((line, ends), (points, samples)) in lines.iter().enumerate().zip(places) {
         let leaves = newton_step(&samples[1]).is_some_and(|step| step.length() > 0.5 * LEAST_CUT * spacing);
-        if !leaves {
+        let is_one_piece = samples[1].piece != 0 && samples.iter().all(|s| s.piece == samples[1].piece);
+        if !leaves || is_one_piece {
             continue;
         }
         let seen = [0, 1].map(|i| face(points[2 * i], &samples[2 * i], spacing));
