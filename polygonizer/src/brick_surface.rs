@@ -38,8 +38,6 @@ pub(crate) struct BrickSurface {
     pub bold: Vec<Bold>,
     /// What meets at those of the vertices that may mark edges or corners, ascending.
     pub facets: Vec<Facets>,
-    /// Whether gradients may jump in the brick.
-    pub creased: bool,
 }
 
 /// The faces that a cell with a sharp edge sees.
@@ -76,6 +74,11 @@ impl BrickSurface {
     pub fn normals_at(&self, number: usize) -> &[Vec3] {
         let found = self.facets.binary_search_by_key(&number, |facets| usize::from(facets.number));
         found.map_or(&[], |n| &self.facets[n].normals)
+    }
+
+    /// Whether the crossings of a vertex's patch lie on faces of different direction.
+    pub fn sees_faces(&self, number: usize) -> bool {
+        self.facets.binary_search_by_key(&number, |facets| usize::from(facets.number)).is_ok()
     }
 
     /// The mixed cell at `[x, y, z]`, if it is one.
@@ -193,7 +196,6 @@ impl<'f> Worker<'f> {
         surface.vertices = Arc::new(self.vertices.clone());
         surface.bold.clone_from(&self.bold);
         surface.facets.clone_from(&self.facets);
-        surface.creased = creased;
         Some(surface)
     }
 
@@ -211,15 +213,7 @@ impl<'f> Worker<'f> {
             }
         }
         let cells = self.keys.iter().map(|&key| MixedCell { first_vertex: 0, key }).collect();
-        BrickSurface {
-            rows,
-            before,
-            cells,
-            vertices: Arc::default(),
-            bold: Vec::new(),
-            facets: Vec::new(),
-            creased: false,
-        }
+        BrickSurface { rows, before, cells, vertices: Arc::default(), bold: Vec::new(), facets: Vec::new() }
     }
 
     /// Marks cells whose ambivalent face meets that of their neighbour. Neighbours in other bricks cost

@@ -54,22 +54,22 @@ fn lines_of(triangle: [VertexRef; 3]) -> [[VertexRef; 2]; 3] {
     })
 }
 
-/// The vertex that a reference means, and whether gradients may jump in its brick.
-fn vertex<'a>(around: &Around<Stitched<'a>>, of: VertexRef) -> Option<(&'a Vertex, bool)> {
-    let brick = around[of.brick()]?;
-    Some((brick.vertices.get(of.number())?, brick.surface.creased))
+/// The vertex that a reference means.
+fn vertex<'a>(around: &Around<Stitched<'a>>, of: VertexRef) -> Option<&'a Vertex> {
+    around[of.brick()]?.vertices.get(of.number())
 }
 
-/// Whether a line may cut off an edge.
+/// Whether a line may cut off an edge: two joined cells share a crossing, so one of them sees both faces.
 fn is_suspect(around: &Around<Stitched>, line: [VertexRef; 2], spacing: f32) -> bool {
-    let [Some((a, a_creased)), Some((b, b_creased))] = line.map(|v| vertex(around, v)) else { return false };
-    (a_creased || b_creased) && may_cut_off(a, b, spacing)
+    let [Some(a), Some(b)] = line.map(|v| vertex(around, v)) else { return false };
+    let sees_faces = |v: VertexRef| around[v.brick()].is_some_and(|b| b.surface.sees_faces(v.number()));
+    may_cut_off(a, b, spacing) && line.into_iter().any(sees_faces)
 }
 
 /// The numbers of those of the middle brick's triangles that have lines that may cut off edges.
 pub(crate) fn suspects(around: &Around<Stitched>, spacing: f32) -> Vec<u32> {
     let Some(own) = around[OWN] else { return Vec::new() };
-    if !around.iter().flatten().any(|brick| brick.surface.creased) {
+    if around.iter().flatten().all(|brick| brick.surface.facets.is_empty()) {
         return Vec::new();
     }
     let has_suspect = |triangle: [VertexRef; 3]| {
@@ -94,7 +94,7 @@ fn own_suspects(around: &Around<Stitched>, spacing: f32) -> (Vec<Face>, Vec<[Ver
             let is_own = |line: &[VertexRef; 2]| line[0].brick() == OWN && is_suspect(around, *line, spacing);
             let before = lines.len();
             lines.extend(lines_of(face).into_iter().filter(is_own));
-            let corners = face.map(|v| vertex(around, v).map(|(vertex, _)| *vertex));
+            let corners = face.map(|v| vertex(around, v).copied());
             if let ([Some(a), Some(b), Some(c)], true) = (corners, lines.len() > before) {
                 faces.push(Face { corners: [a, b, c], lines: lines_of(face) });
             }
@@ -294,7 +294,7 @@ pub(crate) fn cut(around: &Around<Stitched>, splits: &Around<&[Split]>) -> Vec<[
             _ => middles[i - 3].map_or(triangle[0], |(vertex, _)| vertex),
         });
         let points = std::array::from_fn(|i| match i {
-            0..3 => vertex(around, triangle[i]).map_or(Vec3::ZERO, |(vertex, _)| vertex.position),
+            0..3 => vertex(around, triangle[i]).map_or(Vec3::ZERO, |vertex| vertex.position),
             _ => middles[i - 3].map_or(Vec3::ZERO, |(_, position)| position),
         });
         let pieces = pieces(points, middles.map(|m| m.is_some()));
