@@ -180,7 +180,7 @@ impl Surface {
 
     /// What `work` makes of each of these entries, in parallel.
     fn for_entries<T: Send>(&self, indices: &[usize], work: impl Fn(&Self, &Entry) -> T + Sync) -> Vec<T> {
-        indices.par_iter().with_min_len(8).map(|&i| work(self, &self.bricks[i])).collect()
+        indices.par_iter().with_min_len(2).map(|&i| work(self, &self.bricks[i])).collect()
     }
 
     /// Hands each of these entries its result, and returns the keys of those that `take` says are different now.

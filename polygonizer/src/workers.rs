@@ -3,8 +3,13 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Runs `run(worker, i)` for every `i` below `tasks`, `grain` neighbours at a time, and returns the results
-/// that are some, in the order of `i`, whatever the number of threads.
+/// A thread takes at most this part of what is left for each.
+const SHARES: usize = 4;
+
+/// Runs `run(worker, i)` for every `i` below `tasks` and returns the results that are some, in the order of `i`,
+/// whatever the number of threads.
+///
+/// A thread takes `grain` neighbours at a time, fewer towards the end, so that all threads end together.
 ///
 /// Every thread of the current pool that gets work makes one worker. A thread that `run` tells to stop, by
 /// an error, stops all others; the error of the lowest task among those that failed is returned.
@@ -17,16 +22,18 @@ pub(crate) fn run_tasks<W, T: Send, E: Send>(
     let next = AtomicUsize::new(0);
     let shares = Mutex::new(Vec::new());
     let failure: Mutex<Option<(usize, E)>> = Mutex::new(None);
+    let threads = rayon::current_num_threads().min(tasks.div_ceil(grain));
     let work = || {
         let mut worker = None;
         let mut done = Vec::new();
         loop {
-            let first = next.fetch_add(grain, Ordering::Relaxed);
-            if first >= tasks {
-                break;
-            }
+            let share = |first: usize| (tasks.saturating_sub(first) / (SHARES * threads)).clamp(1, grain);
+            let taken = next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
+                (first < tasks).then_some(first + share(first))
+            });
+            let Ok(first) = taken else { break };
             let worker = worker.get_or_insert_with(&make_worker);
-            for task in first..tasks.min(first + grain) {
+            for task in first..first + share(first) {
                 match run(worker, task) {
                     Ok(Some(result)) => done.push((task, result)),
                     Ok(None) => {}
@@ -43,7 +50,6 @@ pub(crate) fn run_tasks<W, T: Send, E: Send>(
         }
         shares.lock().expect("no worker panics while holding it").push(done);
     };
-    let threads = rayon::current_num_threads().min(tasks.div_ceil(grain));
     if threads <= 1 {
         work();
     } else {
