@@ -29,7 +29,7 @@ pub(crate) fn run_tasks<W, T: Send, E: Send>(
         loop {
             let share = |first: usize| (tasks.saturating_sub(first) / (SHARES * threads)).clamp(1, grain);
             let taken = next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
-                (first < tasks).then_some(first + share(first))
+                (first < tasks).then(|| first + share(first))
             });
             let Ok(first) = taken else { break };
             let worker = worker.get_or_insert_with(&make_worker);
@@ -76,6 +76,12 @@ mod tests {
             let result = pool.install(|| run_tasks(1001, 7, || (), odd)).expect("no task fails");
             assert!(result.iter().copied().eq((0..1001).filter(|i| i % 2 == 1)));
         }
+    }
+
+    #[test]
+    fn no_tasks_have_no_results() {
+        let result = run_tasks(0, 8, || (), |(), i| Ok::<_, ()>(Some(i)));
+        assert_eq!(result, Ok(Vec::new()));
     }
 
     #[test]
