@@ -120,8 +120,8 @@ pub use cache::{CachePolicy, CacheStore};
 pub use changes::changed_region;
 pub use checks::ParameterError;
 pub use document::{
-    Change, Command, CommandError, DEFAULT_OLDER_VERSIONS, Document, HISTORY_LIMIT, NewShape, SaveError,
-    write_atomically,
+    Change, Command, CommandError, DEFAULT_OLDER_VERSIONS, Document, HISTORY_LIMIT, JournalEntry, NewShape,
+    SaveError, write_atomically,
 };
 pub use eval::{Tree, support};
 pub use explain::{Part, explain};

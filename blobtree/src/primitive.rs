@@ -104,6 +104,11 @@ pub(crate) struct Drawn<'a> {
 }
 
 impl Primitive {
+    /// Whether it is made from a drawing.
+    pub(crate) fn is_drawn(&self) -> bool {
+        matches!(self, Self::Inflation(_) | Self::LinearSweep(_) | Self::Revolution(_) | Self::PathSweep(_))
+    }
+
     /// What it is drawn with, if it is.
     pub(crate) fn drawn(&mut self) -> Option<Drawn<'_>> {
         let (drawing, falloff, template) = match self {

@@ -5,11 +5,13 @@
 
 mod apply;
 mod command;
+mod journal;
 mod save;
 
 use crate::node::NodeRef;
 use crate::scene::{Scene, SceneError};
 pub use command::{Command, CommandError, NewShape};
+pub use journal::JournalEntry;
 pub use save::{DEFAULT_OLDER_VERSIONS, SaveError, write_atomically};
 use std::collections::VecDeque;
 use std::path::Path;

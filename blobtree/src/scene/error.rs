@@ -67,6 +67,9 @@ pub enum SceneProblem {
     /// The file says that it is something else.
     #[error("not a scene: `format` is {0}, not \"trullo\"")]
     NotTrullo(String),
+    /// The line says that it is something else.
+    #[error("not a line of a journal: `format` is {0}, not \"trullo-journal\"")]
+    NotJournal(String),
     /// The file is from a newer Trullo.
     #[error("version {0} of the format is newer than {VERSION}, the newest that this Trullo reads")]
     NewerVersion(u64),

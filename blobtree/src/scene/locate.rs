@@ -39,7 +39,7 @@ pub(super) fn position(text: &str, steps: &[Step]) -> TextPosition {
 /// The node to which `steps` belong, as a path like `/0/2` or `define.leg/1`; `None` outside any node.
 pub(super) fn node_label(steps: &[Step]) -> Option<String> {
     let (mut label, mut rest) = match steps {
-        [Step::Key(root), rest @ ..] if root == "root" => (String::new(), rest),
+        [Step::Key(root), rest @ ..] if root == "root" || root == "node" => (String::new(), rest),
         [Step::Key(define), Step::Key(name), rest @ ..] if define == "define" => {
             (format!("define.{}", super::error::shortened(name)), rest)
         }

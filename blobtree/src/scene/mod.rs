@@ -9,6 +9,7 @@ mod check;
 mod color;
 mod definitions;
 mod error;
+pub(crate) mod journal;
 mod layout;
 mod locate;
 mod parameters;
@@ -128,6 +129,16 @@ impl Scene {
     pub fn to_text(&self) -> Result<String, SceneError> {
         self.check()?;
         let text = layout::lay_out(&write::compact(self));
+        bounds::check(&text)?;
+        Ok(text)
+    }
+
+    /// The same text on one line, without a line break, for journals.
+    ///
+    /// Promises, cost and errors: as [`Self::to_text`].
+    pub fn to_line(&self) -> Result<String, SceneError> {
+        self.check()?;
+        let text = write::compact(self);
         bounds::check(&text)?;
         Ok(text)
     }

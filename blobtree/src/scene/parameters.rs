@@ -3,6 +3,7 @@
 use super::error::{SceneProblem, nearest, shortened};
 use super::locate::Step;
 use crate::checks::ParameterError;
+use crate::node::Color;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use serde_path_to_error::{Path, Segment};
@@ -34,11 +35,27 @@ pub(super) fn need(map: &mut Map<String, Value>, field: &str, expected: &str) ->
         .ok_or_else(|| (vec![], SceneProblem::Missing { field: field.into(), expected: expected.into() }))
 }
 
+/// Takes a node's colour out, if it has one.
+///
+/// Errors: something that is no colour.
+pub(super) fn color(map: &mut Map<String, Value>) -> Result<Option<Color>, FieldFault> {
+    let expected = "a text like \"#ff8800\"";
+    let Some(text) = take::<String>(map, "color", expected)? else { return Ok(None) };
+    text.parse().map(Some).map_err(|_| {
+        let shown = described(&text.into());
+        (vec![Step::key("color")], wrong("color", shown, "a colour like \"#ff8800\""))
+    })
+}
+
 /// Errors: a field is left over. `legal` are those that would be right.
 pub(super) fn nothing_left(map: &Map<String, Value>, legal: &[&str]) -> Result<(), FieldFault> {
-    let Some(field) = map.keys().next() else { return Ok(()) };
+    map.keys().next().map_or(Ok(()), |field| Err(unknown_field(field, legal)))
+}
+
+/// A field that does not belong there. `legal` are those that would be right.
+pub(super) fn unknown_field(field: &str, legal: &[&str]) -> FieldFault {
     let legal = if legal.is_empty() { "none".into() } else { legal.join(", ") };
-    Err((vec![Step::key(field)], SceneProblem::UnknownField { field: shortened(field), legal }))
+    (vec![Step::key(field)], SceneProblem::UnknownField { field: shortened(field), legal })
 }
 
 /// The whole object as the parameters of a node. `others` are fields that were legal but taken before.

@@ -23,6 +23,9 @@ impl From<FieldFault> for Fault {
     }
 }
 
+/// The word by which a scene file says what it is.
+const FORMAT: &str = "trullo";
+
 /// Brings a file of version n + 1 up to version n + 2, for n its place in [`MIGRATIONS`].
 type Migration = fn(&mut Map<String, Value>);
 
@@ -31,17 +34,27 @@ const MIGRATIONS: [Migration; VERSION as usize - 1] = [];
 
 /// See [`Scene::from_bytes`].
 pub(super) fn scene(bytes: &[u8], sources: &mut dyn SceneSources) -> Result<Scene, SceneError> {
+    let (text, value) = parsed(bytes)?;
+    from_value(value, sources).map_err(|fault| located(text, fault))
+}
+
+/// The JSON value in the bytes, and the text of which it was read.
+pub(super) fn parsed(bytes: &[u8]) -> Result<(&str, Value), SceneError> {
     if bytes.len() > super::MAX_FILE_BYTES {
         return Err(SceneProblem::TooLarge.into());
     }
     let text = text(bytes)?;
     bounds::check(text)?;
-    let value = json(text)?;
-    from_value(value, sources).map_err(|fault| SceneError {
+    Ok((text, json(text)?))
+}
+
+/// The fault with its place in the text.
+pub(super) fn located(text: &str, fault: Fault) -> SceneError {
+    SceneError {
         at: Some(locate::position(text, &fault.steps)),
         node: locate::node_label(&fault.steps),
         problem: fault.problem,
-    })
+    }
 }
 
 fn text(bytes: &[u8]) -> Result<&str, SceneError> {
@@ -78,7 +91,7 @@ fn from_value(value: Value, sources: &mut dyn SceneSources) -> Result<Scene, Fau
         let problem = parameters::wrong("the file", shown, "an object with `format`, `version` and `root`");
         return Err(Fault { steps: vec![], problem });
     };
-    let version = header(&mut file)?;
+    let version = header(&mut file, FORMAT)?;
     // A version before the newest is at least 1, so the index is in range.
     MIGRATIONS.iter().skip(version as usize - 1).for_each(|migrate| migrate(&mut file));
     let title = parameters::take(&mut file, "title", "a text")?;
@@ -92,12 +105,16 @@ fn from_value(value: Value, sources: &mut dyn SceneSources) -> Result<Scene, Fau
     Ok(Scene { title, definitions: Arc::new(reader.into_definitions()), root })
 }
 
-/// The version, which is one that can be read.
-fn header(file: &mut Map<String, Value>) -> Result<u64, Fault> {
+/// The version, which is one that can be read, of a file of this format.
+pub(super) fn header(file: &mut Map<String, Value>, wanted: &'static str) -> Result<u64, Fault> {
     let at = |field: &str, problem| Fault { steps: vec![Step::key(field)], problem };
-    let format = parameters::need(file, "format", "a scene file says \"format\": \"trullo\"")?;
-    if format.as_str() != Some("trullo") {
-        return Err(at("format", SceneProblem::NotTrullo(described(&format))));
+    let is = if wanted == FORMAT { "a scene file" } else { "a line of a journal" };
+    let format = parameters::need(file, "format", &format!("{is} says \"format\": \"{wanted}\""))?;
+    if format.as_str() != Some(wanted) {
+        let found = described(&format);
+        let problem =
+            if wanted == FORMAT { SceneProblem::NotTrullo(found) } else { SceneProblem::NotJournal(found) };
+        return Err(at("format", problem));
     }
     let version = parameters::need(file, "version", &format!("the newest is \"version\": {VERSION}"))?;
     match version.as_u64() {
@@ -110,7 +127,8 @@ fn header(file: &mut Map<String, Value>) -> Result<u64, Fault> {
     }
 }
 
-fn define_all(define: Value, reader: &mut NodeReader) -> Result<(), Fault> {
+/// Reads all definitions.
+pub(super) fn define_all(define: Value, reader: &mut NodeReader) -> Result<(), Fault> {
     let shown = described(&define);
     let Value::Object(mut define) = define else {
         let problem = parameters::wrong("define", shown, "an object of named nodes");

@@ -2,12 +2,14 @@
 
 use super::check::{Size, numbers};
 use super::error::SceneProblem;
+use super::journal::{self, Before};
 use super::locate::Step;
 use super::parameters::{self, FieldFault, described};
 use super::read::Fault;
 use super::{MAX_DEPTH, MAX_NODES, MeshReference, SceneSources, TYPE_NAMES};
+use crate::document::NewShape;
 use crate::imported::ImportedMesh;
-use crate::node::{Color, Node, NodeRef, Shape};
+use crate::node::{Node, NodeRef, Shape};
 use crate::operator::{Operator, Sharpness};
 use crate::primitive::{Drawn, Primitive};
 use crate::sketched::{Drawing, Template};
@@ -23,10 +25,16 @@ type Fields = Map<String, Value>;
 const COMMON: [&str; 5] = ["type", "name", "color", "muted", "construction"];
 /// Those and the warps' own.
 const WARP_COMMON: [&str; 6] = ["child", "type", "name", "color", "muted", "construction"];
+/// The one that a shape without a node has, too.
+const BARE: [&str; 1] = ["type"];
 
 /// Reads nodes, knowing the definitions read so far.
 pub(super) struct NodeReader<'a> {
     sources: &'a mut dyn SceneSources,
+    /// What nodes may refer to, if it is more than definitions.
+    before: Option<Before<'a>>,
+    /// Whether what was loaded and solved for it is known here.
+    has_recalled: bool,
     /// By file and hash.
     loaded: BTreeMap<(String, String), Arc<MeshDistance>>,
     /// The drawings read so far, by falloff, with their templates.
@@ -46,7 +54,12 @@ enum Kind {
 impl<'a> NodeReader<'a> {
     pub(super) fn new(sources: &'a mut dyn SceneSources) -> Self {
         let (loaded, solved, definitions) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
-        Self { sources, loaded, solved, definitions, steps: Vec::new() }
+        Self { sources, before: None, has_recalled: false, loaded, solved, definitions, steps: Vec::new() }
+    }
+
+    /// Reads nodes that come to a scene.
+    pub(super) fn after(before: Before<'a>, sources: &'a mut dyn SceneSources) -> Self {
+        Self { before: Some(before), ..Self::new(sources) }
     }
 
     /// Reads a definition; those that it uses must have been read.
@@ -65,6 +78,29 @@ impl<'a> NodeReader<'a> {
 
     pub(super) fn into_definitions(self) -> BTreeMap<String, NodeRef> {
         self.definitions.into_iter().map(|(name, (node, _))| (name, node)).collect()
+    }
+
+    /// Reads what a node is apart from its children.
+    pub(super) fn read_shape(&mut self, steps: Vec<Step>, value: Value) -> Result<NewShape, Fault> {
+        self.steps = steps;
+        let shown = described(&value);
+        let Value::Object(mut fields) = value else {
+            return Err(self.fault(parameters::wrong("the shape", shown, "an object with `type`")));
+        };
+        let (type_name, kind) = self.kind(&mut fields)?;
+        let shape = match kind {
+            Kind::Primitive => NewShape::Primitive(self.primitive(&type_name, &mut fields, &BARE)?),
+            Kind::Operator(operator) => {
+                let own = operator.sharpness().map(|_| "sharpness");
+                let legal: Vec<&str> = own.into_iter().chain(BARE).collect();
+                parameters::nothing_left(&fields, &legal).map_err(|fault| self.fault_in(fault))?;
+                NewShape::Operator(operator)
+            }
+            Kind::Warp => NewShape::Warp(self.warp(&type_name, &mut fields, &BARE)?),
+        };
+        let mut node = Node::new(journal::childless(shape));
+        self.complete(&mut node)?;
+        Ok(NewShape::from(&node.shape))
     }
 
     fn fault(&self, problem: SceneProblem) -> Fault {
@@ -95,6 +131,8 @@ impl<'a> NodeReader<'a> {
         };
         let (node, size) = if let Some(name) = fields.remove("use") {
             self.used(&name, &fields)?
+        } else if let Some((before, path)) = self.before.zip(fields.remove("kept")) {
+            self.kept(before, &path, &fields)?
         } else {
             let (node, size) = self.fresh(&mut fields, depth)?;
             (NodeRef::new(node), size)
@@ -115,8 +153,19 @@ impl<'a> NodeReader<'a> {
         let Some(name) = name.as_str() else {
             return Err(at_use(parameters::wrong("use", described(name), "the name of a definition")));
         };
-        self.definitions.get(name).cloned().ok_or_else(|| {
+        let found = self.definitions.get(name).cloned();
+        found.or_else(|| self.before.and_then(|before| before.definition(name))).ok_or_else(|| {
             at_use(parameters::unknown("definition", name, self.definitions.keys().map(String::as_str)))
+        })
+    }
+
+    /// A node that stands in the tree before a command.
+    fn kept(&self, before: Before, path: &Value, others: &Fields) -> Result<(NodeRef, Size), Fault> {
+        parameters::nothing_left(others, &["kept"]).map_err(|fault| self.fault_in(fault))?;
+        let found = path.as_str().and_then(|text| text.parse().ok()).and_then(|path| before.kept(&path));
+        found.ok_or_else(|| {
+            let expected = "the path of a node that is there before";
+            self.fault_in((vec![Step::key("kept")], parameters::wrong("kept", described(path), expected)))
         })
     }
 
@@ -129,7 +178,7 @@ impl<'a> NodeReader<'a> {
         let (type_name, kind) = self.kind(fields)?;
         let (shape, size) = match kind {
             Kind::Primitive => {
-                (Shape::Primitive(self.primitive(&type_name, fields)?), Size::over([].into_iter()))
+                (Shape::Primitive(self.primitive(&type_name, fields, &COMMON)?), Size::over([].into_iter()))
             }
             Kind::Operator(operator) => {
                 let (children, size) = self.children(fields, depth)?;
@@ -142,13 +191,19 @@ impl<'a> NodeReader<'a> {
                 let expected = "the node that is warped";
                 let child =
                     parameters::need(fields, "child", expected).map_err(|fault| self.fault_in(fault))?;
-                let warp = self.warp(&type_name, fields)?;
+                let warp = self.warp(&type_name, fields, &WARP_COMMON)?;
                 let (child, size) = self.at(&[Step::key("child")], |reader| reader.node(child, depth + 1))?;
                 (Shape::Warp(warp, child), Size::over([size].into_iter()))
             }
         };
         node.shape = shape;
-        numbers(&node).map_err(|problem| {
+        self.complete(&mut node)?;
+        Ok((node, size))
+    }
+
+    /// Checks the node's own numbers, and solves its drawing if it has one.
+    fn complete(&mut self, node: &mut Node) -> Result<(), Fault> {
+        numbers(node).map_err(|problem| {
             let field = match &problem {
                 SceneProblem::Parameter(e) => vec![Step::key(e.field.split('.').next().unwrap_or_default())],
                 _ => vec![],
@@ -160,11 +215,25 @@ impl<'a> NodeReader<'a> {
         {
             self.solve(drawn)?;
         }
-        Ok((node, size))
+        Ok(())
+    }
+
+    /// Takes over what was loaded and solved for the scene before, once it is needed.
+    fn recall(&mut self) {
+        let Some(before) = self.before.filter(|_| !self.has_recalled) else { return };
+        self.has_recalled = true;
+        let (loaded, solved) = (&mut self.loaded, &mut self.solved);
+        before.sources(
+            |mesh| {
+                loaded.insert((mesh.file.clone(), mesh.sha256.clone()), mesh.distance.clone());
+            },
+            |drawn| solved.push((drawn.falloff, drawn.drawing.clone(), drawn.template.clone())),
+        );
     }
 
     /// Gives a drawn primitive, whose numbers are legal, its template. Equal drawings become one.
     fn solve(&mut self, drawn: Drawn) -> Result<(), Fault> {
+        self.recall();
         let Drawn { drawing, falloff, template } = drawn;
         let known = self.solved.iter().find(|(width, known, _)| *width == falloff && known == drawing);
         if let Some((_, known, solved)) = known {
@@ -184,16 +253,7 @@ impl<'a> NodeReader<'a> {
         let in_here = |fault| self.fault_in(fault);
         let mut node = Node::new(Shape::Operator(Operator::Union, Vec::new()));
         node.name = parameters::take(fields, "name", "a text").map_err(in_here)?;
-        let color: Option<String> =
-            parameters::take(fields, "color", "a text like \"#ff8800\"").map_err(in_here)?;
-        if let Some(color) = color {
-            let color = color.parse::<Color>().map_err(|_| {
-                let shown = described(&color.as_str().into());
-                let problem = parameters::wrong("color", shown, "a colour like \"#ff8800\"");
-                self.fault_in((vec![Step::key("color")], problem))
-            })?;
-            node.color = Some(color);
-        }
+        node.color = parameters::color(fields).map_err(in_here)?;
         node.muted = parameters::take(fields, "muted", "true or false").map_err(in_here)?.unwrap_or(false);
         let construction = parameters::take(fields, "construction", "true or false").map_err(in_here)?;
         node.construction = construction.unwrap_or(false);
@@ -254,38 +314,43 @@ impl<'a> NodeReader<'a> {
         Ok((children, Size::over(sizes.into_iter())))
     }
 
-    fn warp(&self, type_name: &str, fields: &mut Fields) -> Result<Warp, Fault> {
+    fn warp(&self, type_name: &str, fields: &mut Fields, others: &[&str]) -> Result<Warp, Fault> {
         let fields = std::mem::take(fields);
         let warp = match type_name {
-            "transform" => parameters::all(fields, &WARP_COMMON).map(Warp::Transform),
-            "affine" => parameters::all(fields, &WARP_COMMON).map(Warp::Affine),
-            "taper" => parameters::all(fields, &WARP_COMMON).map(Warp::Taper),
-            "twist" => parameters::all(fields, &WARP_COMMON).map(Warp::Twist),
-            _ => parameters::all(fields, &WARP_COMMON).map(Warp::Bend),
+            "transform" => parameters::all(fields, others).map(Warp::Transform),
+            "affine" => parameters::all(fields, others).map(Warp::Affine),
+            "taper" => parameters::all(fields, others).map(Warp::Taper),
+            "twist" => parameters::all(fields, others).map(Warp::Twist),
+            _ => parameters::all(fields, others).map(Warp::Bend),
         };
         warp.map_err(|fault| self.fault_in(fault))
     }
 
-    fn primitive(&mut self, type_name: &str, fields: &mut Fields) -> Result<Primitive, Fault> {
+    fn primitive(
+        &mut self,
+        type_name: &str,
+        fields: &mut Fields,
+        others: &[&str],
+    ) -> Result<Primitive, Fault> {
         let fields = std::mem::take(fields);
         let primitive = match type_name {
-            "point" => parameters::all(fields, &COMMON).map(Primitive::Point),
-            "segment" => parameters::all(fields, &COMMON).map(Primitive::Segment),
-            "polyline" => parameters::all(fields, &COMMON).map(Primitive::Polyline),
-            "disc" => parameters::all(fields, &COMMON).map(Primitive::Disc),
-            "polygon" => parameters::all(fields, &COMMON).map(Primitive::Polygon),
-            "box" => parameters::all(fields, &COMMON).map(Primitive::Box),
-            "cylinder" => parameters::all(fields, &COMMON).map(Primitive::Cylinder),
-            "cone" => parameters::all(fields, &COMMON).map(Primitive::Cone),
-            "torus" => parameters::all(fields, &COMMON).map(Primitive::Torus),
-            "ellipsoid" => parameters::all(fields, &COMMON).map(Primitive::Ellipsoid),
-            "half_space" => parameters::all(fields, &COMMON).map(Primitive::HalfSpace),
-            "inflation" => parameters::all(fields, &COMMON).map(Primitive::Inflation),
-            "sweep" => parameters::all(fields, &COMMON).map(Primitive::LinearSweep),
-            "revolution" => parameters::all(fields, &COMMON).map(Primitive::Revolution),
-            "path_sweep" => parameters::all(fields, &COMMON).map(Primitive::PathSweep),
+            "point" => parameters::all(fields, others).map(Primitive::Point),
+            "segment" => parameters::all(fields, others).map(Primitive::Segment),
+            "polyline" => parameters::all(fields, others).map(Primitive::Polyline),
+            "disc" => parameters::all(fields, others).map(Primitive::Disc),
+            "polygon" => parameters::all(fields, others).map(Primitive::Polygon),
+            "box" => parameters::all(fields, others).map(Primitive::Box),
+            "cylinder" => parameters::all(fields, others).map(Primitive::Cylinder),
+            "cone" => parameters::all(fields, others).map(Primitive::Cone),
+            "torus" => parameters::all(fields, others).map(Primitive::Torus),
+            "ellipsoid" => parameters::all(fields, others).map(Primitive::Ellipsoid),
+            "half_space" => parameters::all(fields, others).map(Primitive::HalfSpace),
+            "inflation" => parameters::all(fields, others).map(Primitive::Inflation),
+            "sweep" => parameters::all(fields, others).map(Primitive::LinearSweep),
+            "revolution" => parameters::all(fields, others).map(Primitive::Revolution),
+            "path_sweep" => parameters::all(fields, others).map(Primitive::PathSweep),
             _ => {
-                let reference = parameters::all(fields, &COMMON).map_err(|fault| self.fault_in(fault))?;
+                let reference = parameters::all(fields, others).map_err(|fault| self.fault_in(fault))?;
                 return self.mesh(reference).map(Primitive::Mesh);
             }
         };
@@ -293,6 +358,7 @@ impl<'a> NodeReader<'a> {
     }
 
     fn mesh(&mut self, reference: MeshReference) -> Result<ImportedMesh, Fault> {
+        self.recall();
         let key = (reference.file.clone(), reference.sha256.clone());
         let distance = match self.loaded.get(&key) {
             Some(distance) => distance.clone(),

@@ -1,7 +1,7 @@
 //! From a scene to JSON text without spaces.
 
 use super::{MeshReference, Scene, VERSION};
-use crate::node::{Node, NodeRef, Shape};
+use crate::node::{Node, NodePath, NodeRef, Shape};
 use crate::primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, Primitive, Segment, Torus,
 };
@@ -19,12 +19,17 @@ pub(super) fn compact(scene: &Scene) -> String {
         format: "trullo",
         version: VERSION,
         title: scene.title.as_deref(),
-        define: (!names.all.is_empty()).then_some(Definitions(&names)),
+        define: names.definitions(),
         root: Referred { node: &scene.root, names: &names },
     };
+    text_of(&file)
+}
+
+/// A value as JSON on one line, with numbers as files have them.
+pub(super) fn text_of(value: &impl Serialize) -> String {
     let mut bytes = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, ShortNumbers);
-    file.serialize(&mut serializer).expect("writing to memory works, and every key is a string");
+    value.serialize(&mut serializer).expect("writing to memory works, and every key is a string");
     String::from_utf8(bytes).expect("JSON is UTF-8")
 }
 
@@ -40,17 +45,29 @@ struct File<'a> {
 }
 
 /// The names under which nodes are written, apart from where they stand.
-struct Names<'a> {
+pub(super) struct Names<'a> {
     /// By address; the nodes stay alive through the scene. Looked up, never walked through.
-    of: HashMap<*const Node, String>,
+    of: HashMap<*const Node, Name>,
+    /// What is to be defined.
     all: BTreeMap<String, &'a NodeRef>,
+    /// Names that mean something else.
+    taken: HashSet<&'a str>,
+}
+
+/// By what a node is referred to.
+#[derive(Clone)]
+enum Name {
+    /// Its definition.
+    Use(String),
+    /// Its place in the tree before a command.
+    Kept(NodePath),
 }
 
 impl<'a> Names<'a> {
     fn of(scene: &'a Scene) -> Self {
-        let mut names = Self { of: HashMap::new(), all: BTreeMap::new() };
+        let mut names = Self { of: HashMap::new(), all: BTreeMap::new(), taken: HashSet::new() };
         for (name, node) in scene.definitions.iter() {
-            names.of.entry(address(node)).or_insert_with(|| name.clone());
+            names.of.entry(address(node)).or_insert_with(|| Name::Use(name.clone()));
             names.all.insert(name.clone(), node);
         }
         let mut seen = HashSet::new();
@@ -61,6 +78,41 @@ impl<'a> Names<'a> {
         names
     }
 
+    /// The names in a node that a command brings to a scene: those of what stands there already, and of what
+    /// the node itself shares.
+    pub fn beside(scene: &'a Scene, node: &'a NodeRef) -> Self {
+        let taken = scene.definitions.keys().map(String::as_str).collect();
+        let mut names = Self { of: HashMap::new(), all: BTreeMap::new(), taken };
+        let mut own = HashSet::new();
+        collect(node, &mut own);
+        names.find_kept(&scene.root, &mut NodePath::default(), &mut own);
+        for (name, node) in scene.definitions.iter().filter(|(_, node)| own.contains(&address(node))) {
+            names.of.entry(address(node)).or_insert_with(|| Name::Use(name.clone()));
+        }
+        names.find_shared(node, &mut HashSet::new(), &mut HashMap::new());
+        names
+    }
+
+    /// The definitions to be written, if there are any.
+    pub fn definitions(&self) -> Option<Definitions<'_>> {
+        (!self.all.is_empty()).then_some(Definitions(self))
+    }
+
+    /// Names those of `wanted` by where they stand below `node`, and takes them out of `wanted`.
+    fn find_kept(&mut self, node: &NodeRef, path: &mut NodePath, wanted: &mut HashSet<*const Node>) {
+        if wanted.remove(&address(node)) {
+            self.of.insert(address(node), Name::Kept(path.clone()));
+        }
+        for (index, child) in node.children().iter().enumerate() {
+            if wanted.is_empty() {
+                return;
+            }
+            path.0.push(index);
+            self.find_kept(child, path, wanted);
+            path.0.pop();
+        }
+    }
+
     /// Names every node that is met a second time.
     fn find_shared(
         &mut self,
@@ -68,6 +120,9 @@ impl<'a> Names<'a> {
         seen: &mut HashSet<*const Node>,
         counts: &mut HashMap<String, usize>,
     ) {
+        if matches!(self.of.get(&address(node)), Some(Name::Kept(_))) {
+            return;
+        }
         if seen.insert(address(node)) {
             node.children().iter().for_each(|child| self.find_shared(child, seen, counts));
         } else if !self.of.contains_key(&address(node)) {
@@ -76,12 +131,12 @@ impl<'a> Names<'a> {
             let name = loop {
                 *count += 1;
                 let name = if *count == 1 { base.to_owned() } else { format!("{base} {count}") };
-                if !self.all.contains_key(&name) {
+                if !self.all.contains_key(&name) && !self.taken.contains(&*name) {
                     break name;
                 }
             };
             self.all.insert(name.clone(), node);
-            self.of.insert(address(node), name);
+            self.of.insert(address(node), Name::Use(name));
         }
     }
 }
@@ -90,14 +145,21 @@ fn address(node: &NodeRef) -> *const Node {
     std::ptr::from_ref(&**node)
 }
 
-struct Definitions<'a>(&'a Names<'a>);
+/// The addresses of all nodes of a tree.
+fn collect(node: &NodeRef, to: &mut HashSet<*const Node>) {
+    if to.insert(address(node)) {
+        node.children().iter().for_each(|child| collect(child, to));
+    }
+}
+
+pub(super) struct Definitions<'a>(&'a Names<'a>);
 
 impl Serialize for Definitions<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.0.all.len()))?;
         for (name, node) in &self.0.all {
             // Of two names for the same node, the second refers to the first.
-            if self.0.of[&address(node)] == *name {
+            if matches!(&self.0.of[&address(node)], Name::Use(first) if first == name) {
                 map.serialize_entry(name, &Written { node, names: self.0 })?;
             } else {
                 map.serialize_entry(name, &Referred { node, names: self.0 })?;
@@ -108,9 +170,9 @@ impl Serialize for Definitions<'_> {
 }
 
 /// A node where it stands: by name if it has one.
-struct Referred<'a> {
-    node: &'a NodeRef,
-    names: &'a Names<'a>,
+pub(super) struct Referred<'a> {
+    pub node: &'a NodeRef,
+    pub names: &'a Names<'a>,
 }
 
 impl Serialize for Referred<'_> {
@@ -119,7 +181,10 @@ impl Serialize for Referred<'_> {
         match names.of.get(&address(node)) {
             Some(name) => {
                 let mut map = serializer.serialize_map(Some(1))?;
-                map.serialize_entry("use", name)?;
+                match name {
+                    Name::Use(name) => map.serialize_entry("use", name)?,
+                    Name::Kept(path) => map.serialize_entry("kept", &path.to_string())?,
+                }
                 map.end()
             }
             None => Written { node, names }.serialize(serializer),
@@ -136,18 +201,7 @@ struct Written<'a> {
 impl Serialize for Written<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { node, names } = *self;
-        let sharpness = match &node.shape {
-            Shape::Operator(operator, _) => operator.sharpness().map(|s| s.get()),
-            _ => None,
-        };
         let fields = Fields {
-            type_name: node.type_name(),
-            name: node.name.as_deref(),
-            color: node.color.map(|color| color.to_string()),
-            muted: node.muted,
-            construction: node.construction,
-            sharpness,
-            parameters: Parameters::of(node),
             children: match &node.shape {
                 Shape::Operator(_, children) => Some(Children { children, names }),
                 _ => None,
@@ -156,8 +210,18 @@ impl Serialize for Written<'_> {
                 Shape::Warp(_, child) => Some(Referred { node: child, names }),
                 _ => None,
             },
+            ..Fields::of(node)
         };
         fields.serialize(serializer)
+    }
+}
+
+/// A node without its children.
+pub(super) struct Bare<'a>(pub &'a Node);
+
+impl Serialize for Bare<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Fields::of(self.0).serialize(serializer)
     }
 }
 
@@ -181,6 +245,27 @@ struct Fields<'a> {
     children: Option<Children<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     child: Option<Referred<'a>>,
+}
+
+impl<'a> Fields<'a> {
+    /// All but the children.
+    fn of(node: &'a Node) -> Self {
+        let sharpness = match &node.shape {
+            Shape::Operator(operator, _) => operator.sharpness().map(|s| s.get()),
+            _ => None,
+        };
+        Self {
+            type_name: node.type_name(),
+            name: node.name.as_deref(),
+            color: node.color.map(|color| color.to_string()),
+            muted: node.muted,
+            construction: node.construction,
+            sharpness,
+            parameters: Parameters::of(node),
+            children: None,
+            child: None,
+        }
+    }
 }
 
 struct Children<'a> {
