@@ -4,6 +4,7 @@
 //! more than half a gigabyte of memory, and (by `./run`) more than two seconds for one input are finds.
 
 mod scene;
+mod strokes;
 
 use std::io::Cursor;
 
@@ -11,6 +12,7 @@ use mesh::Mesh;
 use mesh::io::{Attachments, Format, ReadLimits, close_cracks, read_as_written, write};
 
 pub use scene::read_scene;
+pub use strokes::{draw, read_strokes};
 
 #[doc(hidden)]
 pub use libfuzzer_sys;
