@@ -2,7 +2,10 @@
 //!
 //! usvg resolves groups, transforms, styles, units, reused parts and basic shapes; what is left are paths.
 //! Each of their contours is a stroke, filled ones closed. Text, pictures in the picture, clips, masks and
-//! patterns are left out, and nothing is loaded from outside the file.
+//! patterns are left out, arrow heads too, and nothing is loaded from outside the file.
+
+mod links;
+mod reuse;
 
 use super::error::{ReadError, ReadProblem};
 use super::{MAX_SAMPLES, MAX_STROKES};
@@ -19,11 +22,7 @@ const MAX_NODES: u32 = 200_000;
 /// files could exhaust the stack.
 const MAX_DEPTH: usize = 256;
 
-/// Most clips, masks, patterns and other parts that can refer to each other in a chain, which usvg follows by
-/// recursion. Drawing programs write some hundreds.
-const MAX_LINKED: usize = 2000;
-
-/// The stack for reading, bytes: chains of [`MAX_LINKED`] parts take up to 7 KiB a link.
+/// The stack for reading, bytes: elements in elements in reused parts.
 const STACK: usize = 64 << 20;
 
 /// How far lines may leave the curves for which they stand, as a part of the picture's larger side: half a
@@ -35,6 +34,7 @@ const MAX_LINES: f32 = 1000.0;
 
 /// The outlines of the picture in the text. Errors: as [`super::read`].
 pub(super) fn strokes(text: &str) -> Result<Vec<Stroke>, ReadError> {
+    let text = &*links::without_links(text);
     let options = ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|error| {
         let pos = error.pos();
@@ -45,8 +45,11 @@ pub(super) fn strokes(text: &str) -> Result<Vec<Stroke>, ReadError> {
     })?;
     check_depth(&document)?;
     check_links(&document)?;
-    let tree = with_room(|| usvg::Tree::from_xmltree(&document, &nothing_from_outside()))?
-        .map_err(|error| ReadProblem::Svg(error.to_string()))?;
+    let tree = with_room(|| {
+        reuse::check_reuse(&document)?;
+        usvg::Tree::from_xmltree(&document, &nothing_from_outside())
+            .map_err(|error| ReadError::from(ReadProblem::Svg(error.to_string())))
+    })??;
     let mut contours = Vec::new();
     collect(tree.root(), &mut contours)?;
     let size = bounds(contours.iter().flat_map(|contour| contour.hull()))
@@ -84,12 +87,12 @@ fn with_room<T: Send>(read: impl FnOnce() -> T + Send) -> Result<T, ReadError> {
     .ok_or_else(|| ReadProblem::Svg("there is not enough memory to read it".into()).into())
 }
 
+/// Errors: a link that was not taken out, because its letters are not written as letters.
 fn check_links(document: &Document) -> Result<(), ReadError> {
-    const LINKED: [&str; 6] = ["clipPath", "mask", "pattern", "marker", "filter", "symbol"];
-    let linked = document.descendants().filter(|node| LINKED.contains(&node.tag_name().name()));
-    if linked.count() > MAX_LINKED {
-        let problem = format!("it has more than {MAX_LINKED} clips, masks, patterns, markers and filters");
-        return Err(ReadProblem::Svg(problem).into());
+    let mut values = document.descendants().flat_map(|node| node.attributes().map(|a| a.value()));
+    if values.any(links::has_link) || document.descendants().filter_map(|n| n.text()).any(links::has_link) {
+        let problem = "it hides a link, url(…), behind character references; write it in plain letters";
+        return Err(ReadProblem::Svg(problem.into()).into());
     }
     Ok(())
 }
