@@ -180,25 +180,41 @@ impl NullaryFnOnce for Spread<'_> {
             [FROM_LOWER_Y | FROM_LOWER_X | rising, FROM_HIGHER_Y | FROM_HIGHER_X | rising];
         let [south_east, north_west] =
             [FROM_LOWER_Y | FROM_HIGHER_X | falling, FROM_HIGHER_Y | FROM_LOWER_X | falling];
+        let Costs { keys, next, .. } = self.costs;
         for (y, plane) in self.plane.chunks_exact_mut(row).enumerate() {
-            let line = |y: usize| &self.costs.keys[y * (row + 2)..][..row + 2];
-            let (below, here, above) = (line(y), line(y + 1), line(y + 2));
-            let next = &mut self.costs.next[(y + 1) * (row + 2) + 1..][..row];
-            for x in 0..self.nx {
-                let key = here[x + 1]
-                    .min(here[x] | west)
-                    .min(here[x + 2] | east)
-                    .min(below[x + 1] | south)
-                    .min(above[x + 1] | north)
-                    .min(below[x] | south_west)
-                    .min(above[x + 2] | north_east)
-                    .min(below[x + 2] | south_east)
-                    .min(above[x] | north_west);
-                next[x] = key & !DIRECTION;
-                let direction = (key & DIRECTION) as u8;
-                plane[x] = if self.second { plane[x] | direction << 4 } else { direction };
+            let line = |y: usize| &keys[y * (row + 2)..][..self.nx + 2];
+            let next = &mut next[(y + 1) * (row + 2) + 1..][..self.nx];
+            let plane = &mut plane[..self.nx];
+            let from = [[south_west, south, south_east], [west, 0, east], [north_west, north, north_east]];
+            if self.second {
+                spread_row::<true>([line(y), line(y + 1), line(y + 2)], from, next, plane);
+            } else {
+                spread_row::<false>([line(y), line(y + 1), line(y + 2)], from, next, plane);
             }
         }
+    }
+}
+
+/// The cheapest keys of a row and their directions, from the lines around it, each with a margin of one. `from` holds
+/// the direction from each of the nine places.
+#[inline(always)]
+fn spread_row<const SECOND: bool>(
+    lines: [&[u16]; 3],
+    from: [[u16; 3]; 3],
+    next: &mut [u16],
+    plane: &mut [u8],
+) {
+    let count = next.len().min(plane.len());
+    let (next, plane) = (&mut next[..count], &mut plane[..count]);
+    let [below, here, above] = lines.map(|line| [0, 1, 2].map(|shift| &line[shift..][..count]));
+    for x in 0..count {
+        let lowest = |places: [&[u16]; 3], from: [u16; 3]| {
+            (places[0][x] | from[0]).min(places[1][x] | from[1]).min(places[2][x] | from[2])
+        };
+        let key = lowest(below, from[0]).min(lowest(here, from[1])).min(lowest(above, from[2]));
+        next[x] = key & !DIRECTION;
+        let direction = (key & DIRECTION) as u8;
+        plane[x] = if SECOND { plane[x] | direction << 4 } else { direction };
     }
 }
 
