@@ -15,7 +15,7 @@ use std::collections::HashMap;
 ///   stands on the bed, on what was there, or on another grown one. A path ends at the first voxel that is carried.
 /// - **Cost:** one pass, and a look at the voxels around each grown one.
 /// - **Source:** Reiner & Lefebvre 2016, "grow". **Departs:** theirs adds one path for each position of the brush and
-///   puts the brush along it, as [`Brush::AddGrow`](crate::Brush::AddGrow) does; here paths are a voxel wide and
+///   puts the brush along it, as [`Action::AddGrow`](crate::Action::AddGrow) does; here paths are a voxel wide and
 ///   join where they meet.
 pub fn grow(grid: &mut VoxelGrid, element: &Element, paths: &dyn Paths, material: u8) -> Changes {
     let mut changes = Changes::default();
