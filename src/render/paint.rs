@@ -61,8 +61,8 @@ mod tests {
 
     /// A facet that leans out by so many degrees from the vertical, well above the bed.
     fn facet(degrees: f32) -> [Vec3; 3] {
-        let down = Vec3::new(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
-        [Vec3::Z * 9.0, Vec3::Z * 9.0 + down, Vec3::Z * 9.0 + down + Vec3::Y]
+        let up = Vec3::new(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
+        [Vec3::Z * 9.0, Vec3::Z * 9.0 + up + Vec3::Y, Vec3::Z * 9.0 + up]
     }
 
     #[test]

@@ -97,8 +97,8 @@ impl Element {
     ///
     /// - **Promises:** over many layers, the overhang let through is within 0.6° of θ in every direction, for θ from
     ///   20° to 70° (0.54° is the worst there is). Over few it is as rough as voxels are: after any number of
-    ///   layers, whichever layer it starts from, the solid has reached as far as the disc to 2 voxels if a layer
-    ///   takes one or two steps, and to 3.5 if it takes six. A layer never reaches further than the next whole
+    ///   layers, whichever layer it starts from, the solid has reached as far as the disc to 2.5 voxels if a
+    ///   layer takes one or two steps, and to 3.5 if it takes six. A layer never reaches further than the next whole
     ///   number of voxels, in x and in y.
     /// - **Errors:** [`ElementError::TooFine`] if a layer reaches more than 8 voxels.
     pub fn round(overhang: OverhangAngle, size: VoxelSize) -> Result<Self, ElementError> {
