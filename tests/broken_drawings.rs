@@ -6,7 +6,6 @@ mod common;
 
 use common::{Folder, text_of};
 use std::fmt::Write;
-use std::process::Command;
 
 /// All that a process may map, so that its peak in memory is less: 700 MB.
 const MEMORY_KIB: u32 = 700_000_000 / 1024;
@@ -77,16 +76,8 @@ fn odd_drawings_become_solids_or_are_refused_with_a_reason_in_two_seconds() {
     let folder = Folder::new();
     for (name, text, expected) in drawings() {
         folder.write(name, text);
-        let trullo =
-            folder.command(&["sketch", name, "-o", "out.trullo", "--as", "inflate", "--threads", "1"]);
-        let limits = format!("ulimit -v {MEMORY_KIB}; ulimit -t {CPU_SECONDS}; exec \"$@\"");
-        let output = Command::new("sh")
-            .args(["-c", &limits, "sh"])
-            .arg(trullo.get_program())
-            .args(trullo.get_args())
-            .current_dir(trullo.get_current_dir().expect("it runs in the folder"))
-            .output()
-            .expect("there is a shell");
+        let args = ["sketch", name, "-o", "out.trullo", "--as", "inflate", "--threads", "1"];
+        let output = folder.limited(&args, MEMORY_KIB, CPU_SECONDS);
         let said = text_of(&output.stderr);
         let what = format!("{name}: {:?}, {said}", output.status);
         assert!(!said.contains("panicked"), "{what}");

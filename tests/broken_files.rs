@@ -8,7 +8,6 @@ mod common;
 
 use breakage::{Broken, all};
 use common::{Folder, text_of};
-use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -79,16 +78,9 @@ fn try_file(folder: &Folder, file: &Broken, verb: &str) -> (bool, Duration) {
         "slice" => &["-o", &out, "--cells", "16"],
         _ => &[],
     };
-    let limits = format!("ulimit -v {MEMORY_KIB}; ulimit -t {CPU_SECONDS}; exec \"$@\"");
-    let trullo = folder.command(&[&[verb, name, "-q", "--threads", "1"], rest].concat());
+    let args = [&[verb, name, "-q", "--threads", "1"], rest].concat();
     let start = Instant::now();
-    let output = Command::new("sh")
-        .args(["-c", &limits, "sh"])
-        .arg(trullo.get_program())
-        .args(trullo.get_args())
-        .current_dir(trullo.get_current_dir().expect("it runs in the folder"))
-        .output()
-        .expect("there is a shell");
+    let output = folder.limited(&args, MEMORY_KIB, CPU_SECONDS);
     let took = start.elapsed();
 
     let said = text_of(&output.stderr);

@@ -58,6 +58,19 @@ impl Folder {
         names
     }
 
+    /// What the program answers within so much memory and processor time.
+    pub fn limited(&self, args: &[&str], memory_kib: u32, cpu_seconds: u32) -> Output {
+        let trullo = self.command(args);
+        let limits = format!("ulimit -v {memory_kib}; ulimit -t {cpu_seconds}; exec \"$@\"");
+        Command::new("sh")
+            .args(["-c", &limits, "sh"])
+            .arg(trullo.get_program())
+            .args(trullo.get_args())
+            .current_dir(trullo.get_current_dir().expect("it runs in the folder"))
+            .output()
+            .expect("there is a shell")
+    }
+
     /// The program, about to run here.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_trullo"));
