@@ -10,6 +10,7 @@ use blobtree::{Field, ImportedMesh, NodeRef, Tree};
 use geometry::*;
 use glam::Vec3;
 use mesh::{Mesh, MeshDistance, SelfIntersections, Validity, shapes};
+use polygonizer::{Options, PolygonizeError, Surface};
 use std::sync::Arc;
 
 /// The largest difference of a mesh's volume from the field's, as a share.
@@ -125,12 +126,16 @@ fn imported() -> ImportedMesh {
 
 /// The mesh in the coarsest cells, a 40th of the solid's box or a half, a quarter and so on of that, that show
 /// the solid: their halves change the volume by less than [`SETTLED`]. Thin sheets and spikes need the finest.
-/// Every mesh on the way must be sound.
+/// Every mesh on the way must be sound. Solids too large for cells as fine show as much as they can.
 fn telling_mesh(tree: &Tree, longest: f32, name: &str, complaints: &mut Complaints) -> (f32, Mesh) {
     let mut last: Option<(f32, Mesh)> = None;
     for cells in CELLS {
         let mm = longest / cells as f32;
-        let mesh = surface(tree, mm).mesh();
+        let mesh = match Surface::build(tree, cell(mm), &Options::default()) {
+            Ok(surface) => surface.mesh(),
+            Err(PolygonizeError::TooFine { .. }) => break,
+            Err(error) => panic!("{name} at {cells} cells: {error}"),
+        };
         complaints.check_sound(&mesh, mm, &format!("{name} at {cells} cells"));
         if let Some(last) = last.take_if(|last| has_settled(&last.1, &mesh)) {
             return last;

@@ -64,11 +64,12 @@ impl Guess {
     }
 }
 
-/// The smallest dot product of any two of the planes' normals.
+/// The smallest dot product of any two of the planes' normals. Planes without a normal, from where the field has no
+/// gradient, say nothing.
 pub(crate) fn turn(planes: &[Plane]) -> f32 {
     let mut least = 1.0_f32;
-    for (i, a) in planes.iter().enumerate() {
-        for b in &planes[i + 1..] {
+    for (i, a) in planes.iter().enumerate().filter(|(_, plane)| plane.normal != Vec3::ZERO) {
+        for b in planes[i + 1..].iter().filter(|plane| plane.normal != Vec3::ZERO) {
             least = least.min(a.normal.dot(b.normal));
         }
     }
@@ -78,7 +79,7 @@ pub(crate) fn turn(planes: &[Plane]) -> f32 {
 /// The planes joined to one for each direction, at most six.
 pub(crate) fn faces_of(planes: &[Plane]) -> Vec<Plane> {
     let mut faces: Vec<(Plane, Plane, f32)> = Vec::new();
-    for plane in planes {
+    for plane in planes.iter().filter(|plane| plane.normal != Vec3::ZERO) {
         match faces.iter().position(|(first, ..)| first.normal.dot(plane.normal) > SAME_FACE) {
             Some(i) => {
                 let (_, sum, count) = &mut faces[i];
@@ -111,4 +112,18 @@ pub(crate) fn clip(point: Vec3, direction: Vec3, allowed: &Aabb) -> Option<[f32;
         range = [range[0].max(a.min(b)), range[1].min(a.max(b))];
     }
     (range[0] <= range[1] && range[0].is_finite() && range[1].is_finite()).then_some(range)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_without_a_normal_are_no_faces_and_turn_nothing() {
+        let plane = |normal| Plane { point: Vec3::ZERO, normal };
+        let flat = [plane(Vec3::Z), plane(Vec3::ZERO), plane(Vec3::Z)];
+        assert_eq!((turn(&flat), faces_of(&flat).len()), (1.0, 1));
+        let edge = [plane(Vec3::Z), plane(Vec3::ZERO), plane(Vec3::X)];
+        assert_eq!((turn(&edge), faces_of(&edge).len()), (0.0, 2));
+    }
 }
