@@ -1,6 +1,7 @@
 //! The whole way from a drawing to the field that a sketched primitive sweeps.
 
 use crate::curve::{self, NoOutline};
+use crate::suggest::Outlines;
 use crate::template;
 use blobtree::{Drawing, Template};
 use glam::DVec2;
@@ -18,6 +19,22 @@ pub fn solve(drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, N
     let curve = curve::fit(drawing)?;
     let template = template::solve(&curve, falloff, &pressures(drawing, &curve.left_out));
     template.map(Arc::new).map_err(|reason| NoOutline::NoField { reason: reason.to_string() })
+}
+
+/// Finds outlines for suggestions as [`solve`] does when the scene is read again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Solver;
+
+impl Outlines for Solver {
+    type Reason = NoOutline;
+
+    fn left_out(&self, drawing: &Drawing) -> Result<Vec<usize>, NoOutline> {
+        curve::fit(drawing).map(|curve| curve.left_out)
+    }
+
+    fn template(&self, drawing: &Drawing) -> Result<Arc<Template>, NoOutline> {
+        solve(drawing, None)
+    }
 }
 
 /// How hard the pen pressed along the strokes of the outline.

@@ -1,5 +1,6 @@
 //! The commands behind the suggestions.
 
+use super::companion::Companion;
 use super::rules::Icon;
 use super::surface::{Surface, drawn_on, part, plain};
 use super::{Request, tubes};
@@ -28,10 +29,8 @@ pub(super) struct Sketched<'a> {
     pub depth: f32,
     /// What they enclose; none if they do not close.
     pub outline: Option<Outline>,
-    /// The stroke beside the outline, pixels; empty without one.
-    pub path: Vec<Vec2>,
-    /// Whether that stroke is straight.
-    pub axis: bool,
+    /// The stroke beside the outline.
+    pub companion: Companion,
 }
 
 impl Sketched<'_> {
@@ -81,7 +80,8 @@ impl Sketched<'_> {
     /// The straight stroke beside the outline.
     fn axis(&self) -> Option<RevolutionAxis> {
         let placement = self.request.view.placement(self.depth);
-        let (from, to) = self.path.first().zip(self.path.last()).filter(|_| self.axis)?;
+        let path = &self.companion.path;
+        let (from, to) = path.first().zip(path.last()).filter(|_| self.companion.is_axis())?;
         let at = placement.mm_from_px(*from);
         Some(RevolutionAxis { at, direction: placement.mm_from_px(*to) - at })
     }
@@ -89,11 +89,11 @@ impl Sketched<'_> {
     /// The stroke beside the outline in space: on the surface where it lies on that from end to end, else in the
     /// sketch plane.
     fn path(&self) -> Vec<Vec3> {
-        let view = &self.request.view;
+        let (view, path) = (&self.request.view, &self.companion.path);
         let surface = Surface::new(&drawn_on(self.request.root));
         let on_surface: Option<Vec<Vec3>> =
-            self.path.iter().map(|px| Some(surface.under(view, *px)?.point)).collect();
-        on_surface.unwrap_or_else(|| self.path.iter().map(|px| view.at_depth(*px, self.depth)).collect())
+            path.iter().map(|px| Some(surface.under(view, *px)?.point)).collect();
+        on_surface.unwrap_or_else(|| path.iter().map(|px| view.at_depth(*px, self.depth)).collect())
     }
 
     fn tubes(&self) -> Option<NodeRef> {

@@ -10,6 +10,7 @@
 //! **Source:** Schmidt & Wyvill 2011, §11.2.1 and §11.2.3.
 
 mod commands;
+mod companion;
 mod rules;
 mod surface;
 mod tubes;
@@ -23,7 +24,8 @@ use crate::solid::Outline;
 use crate::stroke::Sketch;
 use blobtree::{Color, Command, Drawing, NodePath, NodeRef, Shape, SketchPlane, Template};
 use commands::Sketched;
-use glam::{Vec2, Vec3};
+use companion::Companion;
+use glam::Vec3;
 use rules::Facts;
 use std::sync::Arc;
 use surface::{Surface, drawn_on, part};
@@ -89,10 +91,6 @@ pub struct Suggestion {
     pub command: Command,
 }
 
-/// The most that a straight stroke may leave the line between its ends, as a part of it: an axis is drawn with
-/// care, 0.03; a path that bends by 0.1 is meant to bend.
-const STRAIGHT: f32 = 0.06;
-
 /// The nearest that a sketch plane may be to the eye of a perspective view, mm.
 const NEAREST_PLANE: f32 = 1.0;
 
@@ -103,20 +101,27 @@ const NEAREST_PLANE: f32 = 1.0;
 pub fn suggest<O: Outlines>(request: &Request, outlines: &O) -> Expectations<O::Reason> {
     let Lie { coverage, drawable, depth } = Lie::of(request);
     let plane = request.view.plane(depth);
-    let drawing = request.view.placement(depth).drawing(request.sketch);
+    let placement = request.view.placement(depth);
+    let drawing = placement.drawing(request.sketch);
     let found = outlines.left_out(&drawing).and_then(|left_out| {
-        let path = longest(request.sketch, &left_out);
         let drawing = without(drawing, &left_out);
         let template = outlines.template(&drawing)?;
-        Ok((Outline { drawing: Arc::new(drawing), plane, template }, path))
+        let companion = Companion::of(request.sketch, &left_out, &template, &placement);
+        Ok((Outline { drawing: Arc::new(drawing), plane, template }, companion))
     });
-    let (outline, path, no_outline) = match found {
-        Ok((outline, path)) => (Some(outline), path, None),
-        Err(reason) => (None, Vec::new(), Some(reason)),
+    let (outline, companion, no_outline) = match found {
+        Ok((outline, companion)) => (Some(outline), companion, None),
+        Err(reason) => (None, Companion::default(), Some(reason)),
     };
-    let axis = is_straight(&path);
-    let facts = Facts { closed: outline.is_some(), path: !path.is_empty(), axis, coverage, drawable };
-    let sketched = Sketched { request, target: target(request), depth, outline, path, axis };
+    let facts = Facts {
+        closed: outline.is_some(),
+        path: !companion.path.is_empty(),
+        meant: companion.meant,
+        axis: companion.is_axis(),
+        coverage,
+        drawable,
+    };
+    let sketched = Sketched { request, target: target(request), depth, outline, companion };
     let suggestions = rules::ranked(&facts).into_iter().filter_map(|icon| {
         let command = sketched.command(icon)?;
         Some(Suggestion { icon, color: icon.color(), name: icon.name(), sentence: icon.sentence(), command })
@@ -160,20 +165,6 @@ impl Lie {
         };
         Self { coverage: on_model.coverage, drawable: on_all.coverage != Coverage::Beside, depth }
     }
-}
-
-/// The longest of some strokes of the sketch, thinned out; empty without one.
-fn longest(sketch: &Sketch, strokes: &[usize]) -> Vec<Vec2> {
-    let paths = strokes.iter().filter_map(|&place| sketch.strokes.get(place)).map(commands::path_of);
-    let length = |path: &Vec<Vec2>| path.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f32>();
-    paths.filter(|path| length(path) > 0.0).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or_default()
-}
-
-fn is_straight(path: &[Vec2]) -> bool {
-    let (Some(first), Some(last)) = (path.first(), path.last()) else { return false };
-    let along = *last - *first;
-    let chord = along.length();
-    chord > 0.0 && path.iter().all(|p| (*p - *first).perp_dot(along).abs() <= STRAIGHT * chord * chord)
 }
 
 /// The node on which commands work: the selected one, or the warp above it that is the outermost, below which

@@ -30,9 +30,11 @@ pub enum Icon {
 pub(super) struct Facts {
     /// Whether they make a closed outline.
     pub closed: bool,
-    /// Whether there is an open stroke beside the outline.
+    /// Whether there is an open stroke besides the outline.
     pub path: bool,
-    /// Whether that stroke is straight.
+    /// Whether that stroke can only be meant as a path or an axis, not as decoration.
+    pub meant: bool,
+    /// Whether it is meant and straight.
     pub axis: bool,
     /// How much of them lies on the model.
     pub coverage: Coverage,
@@ -54,9 +56,9 @@ struct Rule {
 /// what removes or draws needs a surface under the strokes. The order is ours: first what can only be meant
 /// here, then what also could be. A shape of its own is always possible, and comes last where strokes cover
 /// the model.
-const RULES: [Rule; 11] = [
+const RULES: [Rule; 12] = [
     // An outline and a path beside it: nobody draws both to inflate them.
-    Rule { icon: Icon::SweepAlong, when: |f| f.closed && f.path && !f.axis, ranks: [Some(1); 3] },
+    Rule { icon: Icon::SweepAlong, when: |f| f.closed && f.meant && !f.axis, ranks: [Some(1); 3] },
     // A straight stroke is an axis before it is a path.
     Rule { icon: Icon::SweepAlong, when: |f| f.closed && f.axis, ranks: [Some(2); 3] },
     // Inside the silhouette, cutting comes first: the paper's holes; across it, growing does: its blends.
@@ -70,6 +72,8 @@ const RULES: [Rule; 11] = [
     Rule { icon: Icon::Inflate, when: |f| f.closed, ranks: [Some(3), Some(6), Some(6)] },
     Rule { icon: Icon::Sweep, when: |f| f.closed, ranks: [Some(4), Some(7), Some(7)] },
     Rule { icon: Icon::Revolve, when: |f| f.closed && !f.axis, ranks: [Some(5), Some(8), Some(8)] },
+    // Tails, smiles and whiskers are paths to nobody, or hardly.
+    Rule { icon: Icon::SweepAlong, when: |f| f.closed && f.path && !f.meant, ranks: [Some(9); 3] },
     // With an axis drawn beside it, the outline is meant to turn about it.
     Rule { icon: Icon::Revolve, when: |f| f.closed && f.axis, ranks: [Some(1); 3] },
 ];
