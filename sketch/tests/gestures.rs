@@ -199,6 +199,60 @@ fn an_erasing_scribble_takes_away_what_lies_under_it_and_splits_the_outline() {
     assert!(sketch.undo_last_stroke() && sketch.is_empty(), "both pieces are one stroke");
 }
 
+/// Rubs back and forth along the outline's right side, as tight as a hand does; along a straight line there if
+/// `radius` is infinite.
+fn rub_along(hand: &mut Hand, radius: f32, size: f32, speed: f32) -> Stroke {
+    let passes = hand.between(6.0, 11.0).floor();
+    let (width, slant) = (hand.between(0.03, 0.4), hand.between(-0.15, 0.15));
+    let uneven: Vec<f32> = (0..=passes as usize + 1).map(|_| hand.between(0.8, 1.1)).collect();
+    let miss = Vec2::new(hand.between(-0.05, 0.05) * size, hand.between(-20.0, 20.0));
+    let path = move |t: f32| {
+        let way = t * passes;
+        let along = uneven[way as usize] * 0.5 * size * (PI * way).cos();
+        let inwards = 0.5 * along * along / radius;
+        let straight = Vec2::new((t - 0.5) * width * size - inwards, along);
+        0.5 * SCREEN + Vec2::new(200.0, 0.0) + miss + straight.rotate(Vec2::from_angle(slant))
+    };
+    hand.draw(path, size, passes * size, speed)
+}
+
+#[test]
+fn rubbing_along_a_line_erases_it_and_hatching_along_one_does_not() {
+    let upright = line_sketch([0.0, -300.0], [0.0, 300.0]);
+    let round = round_sketch(200.0);
+    for (name, sketch, radius) in
+        [("a straight line", &upright, f32::INFINITY), ("a round outline", &round, 200.0)]
+    {
+        let erased = recognised(name, |hand, size, pace| {
+            let stroke = rub_along(hand, radius, size * SCREEN.y, pace * 2.0 * SCREEN.y);
+            matches!(recognise(&stroke, &context(sketch)), Some(Gesture::Erase(_)))
+        });
+        assert!(erased >= 76, "{name}: {erased} of 80");
+    }
+    // A box filled with hatching along its long sides, up to its edges.
+    let sides = [[-30.0, -100.0], [30.0, -100.0], [30.0, 100.0], [-30.0, 100.0], [-30.0, -100.0]];
+    let at = |p: [f32; 2]| 0.5 * SCREEN + Vec2::from(p);
+    let sketch = Sketch::from_strokes(&[Stroke::through(sides.map(at))]);
+    let filled = recognised("hatching", |hand, _, pace| {
+        let passes = hand.between(6.0, 11.0).floor();
+        let reach = hand.between(0.85, 0.97);
+        let path = |t: f32| {
+            let across = 2.0 * t - 1.0;
+            at([27.0 * across, 100.0 * reach * (PI * t * passes).cos()])
+        };
+        let stroke = hand.draw(path, 60.0, passes * 200.0, pace * 2.0 * SCREEN.y);
+        recognise(&stroke, &context(&sketch)).is_none()
+    });
+    assert!(filled >= 76, "hatching: {filled} of 80 are left alone");
+}
+
+/// A sketch of one straight line, given from where the round outline's right side is.
+fn line_sketch(from: [f32; 2], to: [f32; 2]) -> Sketch {
+    let spot = 0.5 * SCREEN + Vec2::new(200.0, 0.0);
+    let place = |i| spot + Vec2::from(from).lerp(to.into(), i as f32 / 30.0);
+    Sketch::from_strokes(&[Stroke::through((0..=30).map(place))])
+}
+
 #[test]
 fn circling_twice_smooths_what_is_inside_and_nothing_else() {
     let mut sketch = round_sketch(200.0);

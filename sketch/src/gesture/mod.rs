@@ -11,6 +11,7 @@
 //! for a gesture's form only, this one also asks for its sense: an eraser must cross something, a circle must
 //! hold something.
 
+mod along;
 mod circle;
 mod crossing;
 mod line;

@@ -1,5 +1,6 @@
 //! Scribbling over something: erase it.
 
+use super::along::lies_along;
 use super::trace::Trace;
 use super::{Context, Gesture};
 use crate::stroke::{OrientedBox, bounds, is_inside};
@@ -42,13 +43,15 @@ const DIRECTIONS: usize = 36;
 
 /// What a scribble erases here; `None` if it is none.
 pub(super) fn erased(trace: &Trace, context: &Context) -> Option<Gesture> {
-    let passes = passes(trace)?;
+    let axis = pass_direction(trace)?;
+    let passes = passes(trace, axis)?;
     let area = smallest_box(trace);
     let side = context.screen.min_element();
     if passes < PASSES || trace.diagonal < SMALLEST * side {
         return None;
     }
-    if crossings(trace, &area, context) >= CROSSINGS * passes as f32 {
+    let over_lines = crossings(trace, &area, context) >= CROSSINGS * passes as f32;
+    if over_lines || lies_along(trace, axis, context.sketch) {
         return Some(Gesture::Erase(area));
     }
     let over_node = context.sketch.is_empty()
@@ -57,9 +60,8 @@ pub(super) fn erased(trace: &Trace, context: &Context) -> Option<Gesture> {
     (over_node && passes >= PASSES_OVER_NODE).then_some(Gesture::Remove)
 }
 
-/// The number of passes of a stroke that goes back and forth over one place; `None` for other strokes.
-fn passes(trace: &Trace) -> Option<usize> {
-    let axis = pass_direction(trace)?;
+/// The number of passes along the axis of a stroke that goes back and forth over one place; `None` for others.
+fn passes(trace: &Trace, axis: Vec2) -> Option<usize> {
     let ends = turning_points(trace, axis);
     let lengths: f32 = ends.windows(2).map(|pair| (ends_apart(trace, pair, axis)).abs()).sum();
     let passes = ends.len().checked_sub(1).filter(|passes| *passes > 0)?;
