@@ -119,6 +119,9 @@ fn read_all(units: Option<f32>) -> Counts {
 #[test]
 fn fewer_than_one_in_two_hundred_strokes_of_doodles_are_taken_for_a_gesture() {
     read_all(None).print_and_check("times unknown");
-    // The doodles were drawn in at most 20 s each, at about a side of the box a second.
-    read_all(Some(1.0)).print_and_check("half to two sides of the box a second");
+    // The doodles were drawn in at most 20 s each, at about a side of the box a second; hardly at half that or twice.
+    for speed in [0.5, 1.0, 2.0] {
+        let title = format!("{} to {} sides of the box a second", 0.5 * speed, 2.0 * speed);
+        read_all(Some(speed)).print_and_check(&title);
+    }
 }
