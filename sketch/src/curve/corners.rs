@@ -17,6 +17,8 @@ const SPARSE_REACH: f64 = 0.04;
 const LEAST_TURN: f64 = 0.7;
 /// Fillets below this radius are corners, in extents; those of a rounded square of 0.08 are not.
 const LARGEST_FILLET: f64 = 0.025;
+/// What lengths along the line may be off, in shares: evenly spaced samples lie just on the ends of a reach.
+const ROUNDING: f64 = 1e-6;
 /// A place asked to be sharp or round concerns corners this near, in extents.
 const NEAR: f64 = 0.05;
 
@@ -79,8 +81,8 @@ impl Closed<'_> {
                 };
                 (if gone < 0. { gone + self.around() } else { gone }, j)
             })
-            .take_while(move |&(gone, _)| gone <= to)
-            .filter(move |&(gone, _)| gone >= from)
+            .take_while(move |&(gone, _)| gone <= to * (1. + ROUNDING))
+            .filter(move |&(gone, _)| gone >= from * (1. - ROUNDING))
     }
 
     fn side(&self, i: usize, forward: bool, from: f64, to: f64) -> Option<Side> {

@@ -17,6 +17,9 @@ pub(super) const MOST_NOISE: f64 = 0.012;
 /// Strokes whose samples are further apart than this on average, in drawing sizes, were thinned out to the places
 /// where they bend, as files of drawings often are. A hand that shakes by 2 % of the drawing makes steps of 0.025.
 const SPARSE: f64 = 0.03;
+/// Of such a stroke hardly a sample lies on the straight way between its neighbours, to this share of that way; one
+/// drawn fast along straight sides has many.
+const ON_THE_WAY: f64 = 0.01;
 
 /// The times of the cubic come from the noisy samples too, which hides this part of the noise (measured).
 const TIMES_FROM_NOISE: f64 = 1.4;
@@ -110,9 +113,18 @@ fn distinct_samples(drawn: &DrawnStroke, frame: &Frame) -> Vec<Sample> {
         samples.push(Sample { at, weight: 1., smoothing, sparse: false });
     }
     let step = length(&samples) / samples.len() as f64;
-    let sparse = step > SPARSE;
+    let sparse = step > SPARSE && 4 * on_the_way(&samples) < samples.len();
     samples.iter_mut().for_each(|sample| sample.sparse = sparse);
     samples
+}
+
+/// How many samples lie on the straight way between their neighbours.
+fn on_the_way(samples: &[Sample]) -> usize {
+    let straight = |three: &&[Sample]| {
+        let (way, aside) = (three[2].at - three[0].at, three[1].at - three[0].at);
+        way.perp_dot(aside).abs() <= ON_THE_WAY * way.length_squared() && way.dot(aside) > 0.
+    };
+    samples.windows(3).filter(straight).count()
 }
 
 /// Whether most of the drawn samples are of strokes that were thinned out.
