@@ -14,4 +14,4 @@ pub mod suggest;
 pub mod template;
 pub mod thin_plate;
 
-pub use solve::{Solver, solve};
+pub use solve::{Solver, drawing_of, redrawn, solve};

@@ -3,7 +3,7 @@
 use crate::curve::{self, NoOutline};
 use crate::suggest::Outlines;
 use crate::template;
-use blobtree::{Drawing, Template};
+use blobtree::{Drawing, DrawnStroke, Primitive, Template};
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -19,6 +19,34 @@ pub fn solve(drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, N
     let curve = curve::fit(drawing)?;
     let template = template::solve(&curve, falloff, &pressures(drawing, &curve.left_out));
     template.map(Arc::new).map_err(|reason| NoOutline::NoField { reason: reason.to_string() })
+}
+
+/// The strokes of a drawn primitive; `None` for other primitives.
+pub fn drawing_of(primitive: &Primitive) -> Option<&Arc<Drawing>> {
+    match primitive {
+        Primitive::Inflation(p) => Some(&p.drawing),
+        Primitive::LinearSweep(p) => Some(&p.drawing),
+        Primitive::Revolution(p) => Some(&p.drawing),
+        Primitive::PathSweep(p) => Some(&p.drawing),
+        _ => None,
+    }
+}
+
+/// A drawn primitive with other strokes in its drawing, solved again; all else stays. One that is not drawn stays
+/// as it is.
+///
+/// Errors: strokes without an outline. **Cost:** that of [`solve`].
+pub fn redrawn(mut primitive: Primitive, strokes: Vec<DrawnStroke>) -> Result<Primitive, NoOutline> {
+    let (drawing, falloff, template) = match &mut primitive {
+        Primitive::Inflation(p) => (&mut p.drawing, p.falloff, &mut p.template),
+        Primitive::LinearSweep(p) => (&mut p.drawing, p.falloff, &mut p.template),
+        Primitive::Revolution(p) => (&mut p.drawing, p.falloff, &mut p.template),
+        Primitive::PathSweep(p) => (&mut p.drawing, p.falloff, &mut p.template),
+        _ => return Ok(primitive),
+    };
+    *drawing = Arc::new(Drawing { strokes, ..Drawing::clone(drawing) });
+    template.0 = solve(drawing, falloff)?;
+    Ok(primitive)
 }
 
 /// Finds outlines for suggestions as [`solve`] does when the scene is read again.

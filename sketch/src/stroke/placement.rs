@@ -1,6 +1,6 @@
 //! From pixels on the screen to mm in a sketch plane.
 
-use super::{Sketch, SketchSample, SketchStroke};
+use super::{PenSample, Sketch, SketchSample, SketchStroke};
 use blobtree::{Drawing, DrawnPoint, DrawnStroke, Holes};
 use glam::Vec2;
 
@@ -62,6 +62,18 @@ impl Placement {
         let thinning = Thinning { along: length / MAX_DRAWN_POINTS as f64, apart: FINEST * extent };
         let strokes = sketch.strokes.iter().map(|stroke| self.drawn(stroke, &thinning)).collect();
         Drawing { strokes, rounded: Vec::new(), sharpened: Vec::new(), holes: Holes::Keep }
+    }
+
+    /// The sketch that a drawing was, to be drawn on, erased and smoothed again; times and tilts are not kept.
+    /// [`Self::drawing`] of it gives the same strokes, up to rounding; exactly where a pixel is a mm about the
+    /// origin. **Cost:** linear.
+    pub fn sketch(&self, drawing: &Drawing) -> Sketch {
+        let sample = |point: &DrawnPoint| {
+            let pen = PenSample { pressure: point.pressure, ..PenSample::at(self.px_from_mm(point.at)) };
+            SketchSample { pen, smoothing: point.smoothing }
+        };
+        let strokes = drawing.strokes.iter().map(|stroke| stroke.points.iter().map(sample).collect());
+        Sketch::from_samples(strokes)
     }
 
     fn drawn(&self, stroke: &SketchStroke, thinning: &Thinning) -> DrawnStroke {

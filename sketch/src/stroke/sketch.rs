@@ -75,6 +75,14 @@ impl Sketch {
         sketch
     }
 
+    /// The sketch of strokes that were one before.
+    pub(super) fn from_samples(strokes: impl IntoIterator<Item = Vec<SketchSample>>) -> Self {
+        let some = strokes.into_iter().filter(|samples| !samples.is_empty());
+        let strokes: Vec<SketchStroke> =
+            some.enumerate().map(|(drawn, samples)| SketchStroke { samples, drawn }).collect();
+        Self { next: strokes.len(), strokes }
+    }
+
     /// Takes in a stroke, cleaned. One of the eraser end rubs out what it passes over; one without a single
     /// usable sample does nothing.
     pub fn add(&mut self, stroke: &Stroke) {
