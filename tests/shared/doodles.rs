@@ -30,7 +30,7 @@ struct Fate {
 }
 
 /// The files of drawings, by name.
-fn files() -> Vec<PathBuf> {
+pub fn files() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(shared("doodles")).expect("a readable folder");
     let mut files: Vec<PathBuf> = entries
         .map(|entry| entry.expect("a readable entry").path())

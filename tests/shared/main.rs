@@ -2,6 +2,9 @@
 //!
 //! `cargo test --features shared --test shared`. Fails, and says so, when the data is not there.
 
+mod chain;
+#[path = "../common/mod.rs"]
+mod common;
 mod doodles;
 mod models;
 mod peer_scenes;
