@@ -20,6 +20,10 @@ const MOST_ON_SKELETON: usize = 100;
 /// Constraints that one round of corrections adds at most.
 const MOST_CORRECTIONS: usize = 400;
 
+/// The least distance between corrections of one round, as a part of the room beside the curve there, and half of it
+/// on the curve: closer ones correct the same miss. Beyond 0.6, fields that were turned differ by too much.
+const APART: f64 = 0.5;
+
 /// Most places around corners that are looked at.
 const MOST_AROUND_CORNERS: usize = 1000;
 
@@ -48,6 +52,15 @@ pub(super) fn ridges_at(ridges: &[CornerRidge], p: DVec2) -> f64 {
     ridges.iter().map(|ridge| ridge.value(p)).sum()
 }
 
+/// A place that may need a correction.
+#[derive(Clone, Copy)]
+struct Candidate {
+    at: DVec2,
+    on_curve: bool,
+    /// The least distance from corrections of the same round.
+    apart: f64,
+}
+
 /// The curve as the fit sees it.
 pub(super) struct Subject<'a> {
     pub outline: &'a Outline,
@@ -70,9 +83,10 @@ impl Subject<'_> {
         let mut constraints = self.constraints(&places, &ridges);
         let mut fitted = Fitted { spline: ThinPlate::fit(&constraints)?, ridges };
         // Again only where much is left, as on a shape with many corners, or a spiral.
+        let candidates = self.candidates(&fitted.ridges);
         for few in [0, 12, 60] {
             let most = MOST_CORRECTIONS.min(MOST.saturating_sub(constraints.len()));
-            let places = self.corrections(&fitted, most);
+            let places = self.corrections(&fitted, &candidates, most);
             if places.len() <= few {
                 break;
             }
@@ -156,29 +170,35 @@ impl Subject<'_> {
         kept.into_iter().map(|(p, _)| (p, false)).collect()
     }
 
-    /// Places that are looked at for corrections: on the curve (true); beside it, where that is clear of the
-    /// skeleton; and around corners.
-    fn candidates(&self, ridges: &[CornerRidge]) -> Vec<(DVec2, bool)> {
+    /// Places that are looked at for corrections: on the curve; beside it, where that is clear of the skeleton; and
+    /// around corners.
+    fn candidates(&self, ridges: &[CornerRidge]) -> Vec<Candidate> {
         let limits = [self.levels.depth, self.levels.falloff.min(2.0 * self.levels.depth)];
+        let samples = &self.samples.samples;
+        let step = samples.iter().map(|s| s.length).sum::<f64>() / samples.len() as f64;
+        let apart = |room: f64| (APART * room).max(2.0 * step);
         let beside = |s: &Sample, side: usize, share: f64| {
-            let away = share * s.room[side].min(limits[side]);
+            let room = s.room[side].min(limits[side]);
+            let away = share * room;
             let normal = s.normal.filter(|_| away > 0.5 * s.length)?;
-            Some((s.at + normal * if side == 0 { -away } else { away }, false))
+            let at = s.at + normal * if side == 0 { -away } else { away };
+            Some(Candidate { at, on_curve: false, apart: apart(room) })
         };
         let around = |(i, s): (usize, &Sample)| {
-            let on_curve = Some((s.at, true));
+            let room = s.room[0].min(limits[0]).min(s.room[1].min(limits[1]));
+            let on_curve = Some(Candidate { at: s.at, on_curve: true, apart: apart(0.5 * room) });
             // Outside, half as many as inside: the true distance takes over there.
             let share = if i.is_multiple_of(2) { 0.3 } else { 0.6 };
             [on_curve, beside(s, 0, 0.3), beside(s, 0, 0.6), beside(s, 1, share)]
         };
-        let mut candidates: Vec<_> =
-            self.samples.samples.iter().enumerate().flat_map(around).flatten().collect();
+        let mut candidates: Vec<_> = samples.iter().enumerate().flat_map(around).flatten().collect();
         // Where a ridge fades, what is left for the spline bends most.
         let turns = (MOST_AROUND_CORNERS / (4 * ridges.len()).max(1)).min(16);
         for ridge in ridges {
             for (turn, share) in (0..turns).flat_map(|turn| [0.4, 0.7, 1.0, 1.3].map(|share| (turn, share))) {
                 let angle = std::f64::consts::TAU * turn as f64 / turns as f64;
-                candidates.push((ridge.at + share * ridge.radius * DVec2::from_angle(angle), false));
+                let at = ridge.at + share * ridge.radius * DVec2::from_angle(angle);
+                candidates.push(Candidate { at, on_curve: false, apart: apart(ridge.radius) });
             }
         }
         candidates
@@ -186,25 +206,23 @@ impl Subject<'_> {
 
     /// Places where the fit is off by more than 0.04 % of the drawing on the curve, or 5 % of the distance beside
     /// it; the worst first, no two close to each other.
-    fn corrections(&self, fitted: &Fitted, most: usize) -> Vec<(DVec2, bool)> {
-        let samples = &self.samples.samples;
-        let candidates = self.candidates(&fitted.ridges);
-        let miss = |&(p, on_curve): &(DVec2, bool)| {
-            let distance = if on_curve { 0.0 } else { self.exact.near(p) };
-            let allowed = if on_curve { 4e-4 * self.size } else { 0.05 * distance.abs() };
-            (fitted.value(p) - distance).abs() / allowed
+    fn corrections(&self, fitted: &Fitted, candidates: &[Candidate], most: usize) -> Vec<(DVec2, bool)> {
+        let miss = |candidate: &Candidate| {
+            let distance = if candidate.on_curve { 0.0 } else { self.exact.near(candidate.at) };
+            let allowed = if candidate.on_curve { 4e-4 * self.size } else { 0.05 * distance.abs() };
+            (fitted.value(candidate.at) - distance).abs() / allowed
         };
         let misses: Vec<f64> = candidates.par_iter().map(miss).collect();
         let mut worst: Vec<usize> = (0..candidates.len()).filter(|&i| misses[i] > 1.0).collect();
         worst.sort_by(|&a, &b| misses[b].total_cmp(&misses[a]));
-        let apart = 2.0 * samples.iter().map(|s| s.length).sum::<f64>() / samples.len() as f64;
         let mut kept: Vec<(DVec2, bool)> = Vec::new();
         for i in worst {
             if kept.len() == most {
                 break;
             }
-            if kept.iter().all(|(p, _)| p.distance(candidates[i].0) > apart) {
-                kept.push(candidates[i]);
+            let Candidate { at, on_curve, apart } = candidates[i];
+            if kept.iter().all(|(p, _)| p.distance(at) > apart) {
+                kept.push((at, on_curve));
             }
         }
         kept
