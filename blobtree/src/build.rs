@@ -32,6 +32,7 @@ use crate::primitive::{
 use crate::sketched::{
     Drawing, Inflation, LinearSweep, PathSweep, Revolution, RevolutionAxis, SketchPlane, Template,
 };
+use crate::support_free::SupportFree;
 use crate::warp::{Axis, Bend, Taper, Transform, Twist, Warp};
 use glam::Vec3;
 use std::sync::Arc;
@@ -272,6 +273,11 @@ pub trait Build: Into<NodeRef> + Sized {
     /// Bends the stretch of `axis` from `start` to `end`, mm, towards another axis.
     fn bend(self, axis: Axis, towards: Axis, start: f32, end: f32, degrees: f32) -> Node {
         self.warp(Warp::Bend(Bend { axis, towards, start, end, degrees }))
+    }
+
+    /// Takes away, or makes matter grow below, what would need supports.
+    fn support_free(self, rule: SupportFree) -> Node {
+        Node::new(Shape::SupportFree(rule, self.into()))
     }
 
     /// Puts it into any warp.

@@ -24,6 +24,9 @@ pub fn changed_region(old: &NodeRef, new: &NodeRef) -> Aabb {
             changed_operands(*a, old, new).unwrap_or(either)
         }
         (Shape::Primitive(a), Shape::Primitive(b)) if a == b => Aabb::EMPTY,
+        (Shape::SupportFree(a, old), Shape::SupportFree(b, new)) if a == b && Arc::ptr_eq(old, new) => {
+            Aabb::EMPTY
+        }
         _ => either,
     };
     let felt = changed.intersection(&either);

@@ -6,6 +6,7 @@ use crate::field::{Field, Sample};
 use crate::node::{Node, NodePath, NodeRef, Shape};
 use crate::operator::Operator;
 use crate::scalar::Slope;
+use crate::support_free::BakeStore;
 use crate::warp::Warp;
 use glam::{Mat3, Vec3};
 
@@ -24,33 +25,41 @@ pub struct Part {
     pub heard: bool,
 }
 
-/// Every node of the tree with its value, gradient and share at `p`, parents before children.
+/// Every node of the tree with its value, gradient and share at `p`, parents before children. Support-free nodes
+/// are their children as drawn.
 ///
 /// Cost: O(nodes · depth). For teaching and picking, not for loops.
 pub fn explain(root: &NodeRef, p: Vec3) -> Vec<Part> {
+    explained(root, p, &BakeStore::default())
+}
+
+/// The same with support-free nodes as they are in `tree`, which is `root` compiled. Where such a node was cut or
+/// grown, it decides, and its child has no share.
+pub fn explain_in(tree: &Tree, root: &NodeRef, p: Vec3) -> Vec<Part> {
+    explained(root, p, &tree.bakes)
+}
+
+fn explained(root: &NodeRef, p: Vec3, bakes: &BakeStore) -> Vec<Part> {
     let mut parts = Vec::new();
-    let sample = sample(root, p);
-    visit(
-        root,
-        sample,
-        View { path: NodePath::default(), p, root_from_here: Mat3::IDENTITY, share: 1.0 },
-        &mut parts,
-    );
+    let sample = sample(root, p, bakes);
+    let view = View { path: NodePath::default(), p, root_from_here: Mat3::IDENTITY, share: 1.0, bakes };
+    visit(root, sample, view, &mut parts);
     parts
 }
 
 /// How a node is looked at.
-struct View {
+struct View<'a> {
     path: NodePath,
     /// The place in the space of the node's parent.
     p: Vec3,
     /// From gradients in that space to gradients in the root's.
     root_from_here: Mat3,
     share: f32,
+    bakes: &'a BakeStore,
 }
 
-fn sample(node: &Node, p: Vec3) -> Sample {
-    Tree::new(node).sample(p)
+fn sample(node: &Node, p: Vec3, bakes: &BakeStore) -> Sample {
+    bakes.compile(node).sample(p)
 }
 
 fn visit(node: &NodeRef, sample: Sample, view: View, parts: &mut Vec<Part>) {
@@ -71,11 +80,18 @@ fn visit(node: &NodeRef, sample: Sample, view: View, parts: &mut Vec<Part>) {
                 p,
                 root_from_here: view.root_from_here * root_from_child,
                 share,
+                bakes: view.bakes,
             };
-            visit(child, self::sample(child, p), view, parts);
+            visit(child, self::sample(child, p, view.bakes), view, parts);
+        }
+        Shape::SupportFree(_, child) => {
+            let below = self::sample(child, view.p, view.bakes);
+            let share = if below.value == sample.value { share } else { 0.0 };
+            visit(child, below, View { path: view.path.child(0), share, ..view }, parts);
         }
         Shape::Operator(operator, children) => {
-            let samples: Vec<Sample> = children.iter().map(|child| self::sample(child, view.p)).collect();
+            let samples: Vec<Sample> =
+                children.iter().map(|child| self::sample(child, view.p, view.bakes)).collect();
             let heard: Vec<bool> = children.iter().map(|child| child.is_heard()).collect();
             let shares = shares(*operator, &samples, &heard);
             for (i, child) in children.iter().enumerate() {
@@ -182,7 +198,7 @@ mod tests {
             let root = random.tree();
             let p = random.place();
             let parts = explain(&root, p);
-            assert_eq!(parts[0].sample, sample(&root, p), "seed {seed}");
+            assert_eq!(parts[0].sample, Tree::new(&root).sample(p), "seed {seed}");
             for part in &parts {
                 let below = parts.iter().filter(|child| child.path.parent().as_ref() == Some(&part.path));
                 let (count, total) = below.fold((0, 0.0), |(n, sum), child| (n + 1, sum + child.share));

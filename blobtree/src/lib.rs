@@ -113,6 +113,7 @@ pub mod random;
 mod scalar;
 mod scene;
 mod sketched;
+mod support_free;
 mod warp;
 mod warp_map;
 
@@ -124,7 +125,7 @@ pub use document::{
     SaveError, write_atomically,
 };
 pub use eval::{Tree, support};
-pub use explain::{Part, explain};
+pub use explain::{Part, explain, explain_in};
 pub use field::{Aabb, BRICK, BRICK_SAMPLES, Brick, Field, ISO, Interval, Sample, Sampler};
 pub use imported::ImportedMesh;
 pub use node::{Color, Node, NodePath, NodePathError, NodeRef, Shape};
@@ -141,5 +142,9 @@ pub use scene::{
 pub use sketched::{
     Drawing, DrawnPoint, DrawnStroke, FieldImage, Holes, Inflation, LinearSweep, PathSweep, Profile,
     Revolution, RevolutionAxis, Side, SketchPlane, Solved, Template,
+};
+pub use support_free::{
+    Bake, BakeError, BakeStore, Baker, Beyond, GROWN_FALLOFF, SupportFree, SupportMode, VOXEL_BRICK,
+    VOXEL_SAMPLES, VoxelBrick, VoxelImage,
 };
 pub use warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};

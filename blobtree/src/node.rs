@@ -2,6 +2,7 @@
 
 use crate::operator::Operator;
 use crate::primitive::Primitive;
+use crate::support_free::SupportFree;
 use crate::warp::Warp;
 use std::sync::Arc;
 
@@ -32,6 +33,8 @@ pub enum Shape {
     Operator(Operator, Vec<NodeRef>),
     /// A child in a deformed space.
     Warp(Warp, NodeRef),
+    /// A child, changed so that it prints without supports.
+    SupportFree(SupportFree, NodeRef),
 }
 
 /// An opaque sRGB colour.
@@ -49,7 +52,7 @@ impl Node {
         match &self.shape {
             Shape::Primitive(_) => &[],
             Shape::Operator(_, children) => children,
-            Shape::Warp(_, child) => std::slice::from_ref(child),
+            Shape::Warp(_, child) | Shape::SupportFree(_, child) => std::slice::from_ref(child),
         }
     }
 
@@ -64,6 +67,7 @@ impl Node {
             Shape::Primitive(primitive) => primitive.type_name(),
             Shape::Operator(operator, _) => operator.type_name(),
             Shape::Warp(warp, _) => warp.type_name(),
+            Shape::SupportFree(..) => "support_free",
         }
     }
 }

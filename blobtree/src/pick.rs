@@ -1,7 +1,7 @@
 //! From a ray to the surface, and from there to the primitive that made it.
 
 use crate::eval::Tree;
-use crate::explain::explain;
+use crate::explain::explain_in;
 use crate::field::{Aabb, Field, ISO, Sampler};
 use crate::node::{NodePath, NodeRef, Shape};
 use glam::Vec3;
@@ -22,7 +22,8 @@ pub struct Hit {
 pub struct Pick {
     /// The place on the surface.
     pub hit: Hit,
-    /// The primitives that make the surface there, with their shares in the field, the largest first. The
+    /// The primitives that make the surface there, and the support-free nodes that cut or grew it, with their shares
+    /// in the field, the largest first. The
     /// first is meant; further taps at the same place cycle through the rest, [`NodePath::parent`] walks up.
     /// Inside a hole it is the part that was taken away.
     pub contributors: Vec<(NodePath, f32)>,
@@ -114,13 +115,20 @@ fn first_inside(sampler: &mut dyn Sampler, at: &dyn Fn(f32) -> Vec3, from: f32, 
 pub fn pick(root: &NodeRef, tree: &Tree, origin: Vec3, direction: Vec3) -> Option<Pick> {
     let resolution = tree.support().size().max_element() / 1024.0;
     let hit = cast_ray(tree, origin, direction, resolution)?;
-    let parts = explain(root, hit.point);
-    let is_primitive =
-        |path: &NodePath| path.find(root).is_some_and(|node| matches!(node.shape, Shape::Primitive(_)));
+    let parts = explain_in(tree, root, hit.point);
+    let decides = |path: &NodePath| {
+        path.find(root).is_some_and(|node| match &node.shape {
+            Shape::Primitive(_) => true,
+            Shape::SupportFree(..) => {
+                parts.iter().all(|part| part.path != path.child(0) || part.share == 0.0)
+            }
+            _ => false,
+        })
+    };
     let mut contributors: Vec<(NodePath, f32)> = parts
-        .into_iter()
-        .filter(|part| part.share > 1e-3 && is_primitive(&part.path))
-        .map(|part| (part.path, part.share))
+        .iter()
+        .filter(|part| part.share > 1e-3 && decides(&part.path))
+        .map(|part| (part.path.clone(), part.share))
         .collect();
     contributors.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
     Some(Pick { hit, contributors })

@@ -17,6 +17,7 @@ use crate::sketched::{
     Drawing, Inflation, LinearSweep, PathSweep, Profile, Revolution, RevolutionAxis, Side, SketchPlane,
     Template,
 };
+use crate::support_free::{SupportFree, SupportMode};
 use crate::warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};
 pub use drawn::{PolygonSources, polygon_template, stroke};
 use fastrand::Rng;
@@ -38,12 +39,21 @@ pub struct RandomTree {
     pub mesh: Option<ImportedMesh>,
     /// Whether drawn solids occur among the primitives. Default: no.
     pub drawn: bool,
+    /// Whether support-free nodes occur. Default: no.
+    pub support_free: bool,
 }
 
 impl RandomTree {
     /// With the defaults above.
     pub fn new(seed: u64) -> Self {
-        Self { rng: Rng::with_seed(seed), depth: 8, children: 4, mesh: None, drawn: false }
+        Self {
+            rng: Rng::with_seed(seed),
+            depth: 8,
+            children: 4,
+            mesh: None,
+            drawn: false,
+            support_free: false,
+        }
     }
 
     /// The next tree: an operator or a warp at the root, unless `depth` is 1.
@@ -63,7 +73,10 @@ impl RandomTree {
     }
 
     fn inner(&mut self, depth: usize) -> Node {
-        let shape = if self.rng.u32(..4) == 0 {
+        let shape = if self.support_free && self.rng.u32(..16) == 0 {
+            let rule = self.rule();
+            Shape::SupportFree(rule, self.node(depth - 1).into())
+        } else if self.rng.u32(..4) == 0 {
             let warp = self.warp();
             Shape::Warp(warp, self.node(depth - 1).into())
         } else {
@@ -240,6 +253,16 @@ impl RandomTree {
         }
     }
 
+    /// The next rule of a support-free node.
+    pub fn rule(&mut self) -> SupportFree {
+        SupportFree {
+            mode: [SupportMode::Trim, SupportMode::Grow, SupportMode::Off][self.rng.usize(..3)],
+            overhang_degrees: self.between(20.0, 70.0),
+            layer_height: self.between(0.1, 2.0),
+            bed: if self.rng.bool() { 0.0 } else { self.between(-30.0, 30.0) },
+        }
+    }
+
     /// The next warp.
     pub fn warp(&mut self) -> Warp {
         let start = self.between(-40.0, 20.0);
@@ -326,7 +349,8 @@ mod tests {
     fn random_trees_are_legal_and_repeatable_and_of_all_types() {
         let mut types = BTreeSet::new();
         for seed in 0..300 {
-            let random = || RandomTree { drawn: seed % 2 == 0, ..RandomTree::new(seed) }.tree();
+            let random =
+                || RandomTree { drawn: seed % 2 == 0, support_free: true, ..RandomTree::new(seed) }.tree();
             let tree = random();
             let scene = Scene::new(tree.clone());
             assert_eq!(scene.check(), Ok(()), "seed {seed}");

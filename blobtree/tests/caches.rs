@@ -211,7 +211,7 @@ fn with_leaf(node: &NodeRef, path: &[usize], leaf: Node) -> NodeRef {
     let mut copy = Node::clone(node);
     match &mut copy.shape {
         Shape::Operator(_, children) => children[*first] = child,
-        Shape::Warp(_, only) => *only = child,
+        Shape::Warp(_, only) | Shape::SupportFree(_, only) => *only = child,
         Shape::Primitive(_) => unreachable!("paths lead through inner nodes"),
     }
     copy.into()

@@ -157,7 +157,10 @@ fn gradients_are_exact_for_every_type_of_node() {
         }
     }
     for name in blobtree::TYPE_NAMES {
-        assert!(tried.get(name).copied().unwrap_or(0) > 50 || name == "mesh", "{name}: {tried:?}");
+        assert!(
+            tried.get(name).copied().unwrap_or(0) > 50 || ["mesh", "support_free"].contains(&name),
+            "{name}: {tried:?}"
+        );
     }
 }
 

@@ -7,6 +7,7 @@ use crate::eval::{Tree, support};
 use crate::node::{Node, NodeRef, Shape};
 use crate::operator::Operator;
 use crate::primitive::Primitive;
+use crate::support_free::{BakeStore, Kept};
 use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Weak};
 
@@ -64,8 +65,14 @@ impl CacheStore {
     /// Compiles `root` for evaluation through caches: those of nodes seen before, and new ones that inherit
     /// from the node at the same place of the version compiled last whatever the edit cannot reach.
     ///
-    /// The field differs from the exact one by less than 0.01, and not at all near creases.
+    /// The field differs from the exact one by less than 0.01, and not at all near creases. Support-free nodes are
+    /// their children as drawn.
     pub fn tree(&mut self, root: &NodeRef) -> Tree {
+        self.tree_with(root, &BakeStore::default())
+    }
+
+    /// The same with bakes for the tree's support-free nodes, which themselves get no caches.
+    pub fn tree_with(&mut self, root: &NodeRef, bakes: &BakeStore) -> Tree {
         self.caches.retain(|_, (node, _)| node.strong_count() > 0);
         let latest = self.latest.take();
         self.visit(root, latest.as_ref(), usize::MAX, true);
@@ -78,7 +85,7 @@ impl CacheStore {
             let (weak, cache) = caches.get(&(std::ptr::from_ref(node) as usize))?;
             (weak.strong_count() > 0).then(|| cache.clone())
         };
-        Tree::compiled(root, &find)
+        Tree::compiled(root, Kept { cache: &find, bakes })
     }
 
     /// How often a primitive was evaluated at a point to fill the caches that are still known.
@@ -115,7 +122,7 @@ impl CacheStore {
         let mut above = above;
         if self.caches.contains_key(&key) {
             above = cost;
-        } else if !is_csg(node) && is_part && cost <= above / 4 {
+        } else if !is_csg(node) && is_part && cost <= above / 4 && !holds_support_free(node) {
             let cache = self.fresh(node, older);
             self.caches.insert(key, (Arc::downgrade(node), Arc::new(cache)));
             above = cost;
@@ -152,6 +159,13 @@ fn is_csg(node: &Node) -> bool {
     matches!(node.shape, Shape::Operator(Union | Intersection | Difference, _))
 }
 
+/// Whether the node is support-free or stands above one that is, so that its field depends on a bake.
+fn holds_support_free(node: &Node) -> bool {
+    node.is_heard()
+        && (matches!(node.shape, Shape::SupportFree(..))
+            || node.children().iter().any(|c| holds_support_free(c)))
+}
+
 /// What evaluating a node costs, in point primitives.
 fn cost(node: &Node) -> usize {
     match &node.shape {
@@ -162,7 +176,7 @@ fn cost(node: &Node) -> usize {
             8 * children.iter().map(|c| cost(c)).sum::<usize>()
         }
         Shape::Operator(_, children) => children.iter().map(|c| cost(c)).sum(),
-        Shape::Warp(_, child) => cost(child),
+        Shape::Warp(_, child) | Shape::SupportFree(_, child) => cost(child),
     }
 }
 

@@ -14,6 +14,7 @@ pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandErr
             | Command::Move { .. }
             | Command::WrapInOperator { .. }
             | Command::WrapInWarp { .. }
+            | Command::WrapInSupportFree { .. }
             | Command::SetShape { .. }
     );
     let new_root = match command {
@@ -26,6 +27,9 @@ pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandErr
         }
         Command::WrapInWarp { path, warp } => {
             edit(root, &path, |node| Ok(Node::new(Shape::Warp(warp, node.clone())).into()))?
+        }
+        Command::WrapInSupportFree { path, rule } => {
+            edit(root, &path, |node| Ok(Node::new(Shape::SupportFree(rule, node.clone())).into()))?
         }
         Command::Unwrap { path } => edit(root, &path, |node| match node.children() {
             [child] => Ok(child.clone()),
@@ -74,7 +78,7 @@ fn edit(
         let mut copy = (**node).clone();
         match &mut copy.shape {
             Shape::Operator(_, children) => children[index] = new,
-            Shape::Warp(_, child) => *child = new,
+            Shape::Warp(_, child) | Shape::SupportFree(_, child) => *child = new,
             Shape::Primitive(_) => {
                 unreachable!("the way goes through children, which primitives do not have")
             }
@@ -104,6 +108,9 @@ fn reshaped(node: &Node, wanted: NewShape, path: &NodePath) -> Result<Shape, Com
             Ok(Shape::Operator(operator, children.clone()))
         }
         (Shape::Warp(_, child), NewShape::Warp(warp)) => Ok(Shape::Warp(warp, child.clone())),
+        (Shape::SupportFree(_, child), NewShape::SupportFree(rule)) => {
+            Ok(Shape::SupportFree(rule, child.clone()))
+        }
         (_, wanted) => Err(CommandError::OtherKind {
             path: path.clone(),
             type_name: node.type_name(),

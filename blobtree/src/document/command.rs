@@ -3,6 +3,7 @@
 use crate::node::{Color, Node, NodePath, NodeRef, Shape};
 use crate::operator::Operator;
 use crate::scene::SceneError;
+use crate::support_free::SupportFree;
 use crate::warp::Warp;
 
 /// One edit. Every path and index means the tree as it is before the edit.
@@ -55,9 +56,16 @@ pub enum Command {
         /// The warp.
         warp: Warp,
     },
+    /// Puts a support-free node in a node's place, with the node as its child.
+    WrapInSupportFree {
+        /// The node.
+        path: NodePath,
+        /// What is asked of it.
+        rule: SupportFree,
+    },
     /// Puts a node's only child in its place.
     Unwrap {
-        /// A warp, or an operator with one child.
+        /// A warp, a support-free node, or an operator with one child.
         path: NodePath,
     },
     /// Gives a node other parameters or makes it another primitive, operator or warp; its children stay.
@@ -111,6 +119,8 @@ pub enum NewShape {
     Operator(Operator),
     /// A warp, in place of a warp.
     Warp(Warp),
+    /// A support-free node, in place of one.
+    SupportFree(SupportFree),
 }
 
 /// Why a command cannot be carried out.
@@ -129,7 +139,7 @@ pub enum CommandError {
         type_name: &'static str,
     },
     /// The node must stay where it is.
-    #[error("{0} is the root or the child of a warp, which cannot be without; replace it instead")]
+    #[error("{0} is the root or the only child that its parent can have; replace it instead")]
     CannotBeTaken(NodePath),
     /// There are fewer children.
     #[error("place {index} is beyond the {len} children of {parent}")]
@@ -178,6 +188,7 @@ impl NewShape {
             Self::Primitive(primitive) => primitive.type_name(),
             Self::Operator(operator) => operator.type_name(),
             Self::Warp(warp) => warp.type_name(),
+            Self::SupportFree(_) => "support_free",
         }
     }
 }
@@ -195,6 +206,7 @@ impl Command {
                 format!("Put {} into {}", at(path), operator.type_name())
             }
             Self::WrapInWarp { path, warp } => format!("Put {} into {}", at(path), warp.type_name()),
+            Self::WrapInSupportFree { path, .. } => format!("Make {} support-free", at(path)),
             Self::Unwrap { path } => format!("Unwrap {}", at(path)),
             Self::SetShape { path, shape } => match path.find(root) {
                 Some(node) if node.type_name() != shape.type_name() => {
@@ -226,6 +238,7 @@ impl From<&Shape> for NewShape {
             Shape::Primitive(primitive) => Self::Primitive(primitive.clone()),
             Shape::Operator(operator, _) => Self::Operator(*operator),
             Shape::Warp(warp, _) => Self::Warp(warp.clone()),
+            Shape::SupportFree(rule, _) => Self::SupportFree(*rule),
         }
     }
 }

@@ -111,8 +111,11 @@ fn illegal_commands_are_told_and_change_nothing() {
     let cases = [
         (Command::Remove { path: path("/7") }, "there is no node at /7"),
         (Command::Remove { path: path("/0/0") }, "there is no node at /0/0"),
-        (Command::Remove { path: path("/") }, "/ is the root or the child of a warp"),
-        (Command::Remove { path: path("/2/0") }, "/2/0 is the root or the child of a warp"),
+        (Command::Remove { path: path("/") }, "/ is the root or the only child that its parent can have"),
+        (
+            Command::Remove { path: path("/2/0") },
+            "/2/0 is the root or the only child that its parent can have",
+        ),
         (
             Command::Insert { parent: path("/0"), index: 0, node: new.clone() },
             "the point at /0 cannot have further children",
@@ -141,7 +144,7 @@ fn illegal_commands_are_told_and_change_nothing() {
         ),
         (
             Command::Move { from: path("/2/0"), parent: path("/1"), index: 0 },
-            "/2/0 is the root or the child of a warp",
+            "/2/0 is the root or the only child that its parent can have",
         ),
         (Command::Move { from: path("/0"), parent: path("/2"), index: 0 }, "the transform at /1 cannot have"),
         (Command::Unwrap { path: path("/1") }, "the node at /1 has 3 children, so it cannot be unwrapped"),

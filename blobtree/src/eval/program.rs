@@ -1,20 +1,24 @@
 //! Trees compiled to flat programs.
 
-use crate::cache::{CacheSite, NodeCache};
+use crate::cache::CacheSite;
 use crate::field::{Aabb, Field, Sampler};
-use crate::leaf::{self, Frame, Leaf, even_scale};
-use crate::node::{Node, Shape};
+use crate::leaf::{self, Frame, Leaf, Voxels, even_scale};
+use crate::node::{Node, NodeRef, Shape};
 use crate::operator::Operator;
+use crate::primitive::{HalfSpace, Primitive};
+use crate::support_free::{Bake, BakeStore, GROWN_FALLOFF, Kept, SupportFree, SupportMode};
 use crate::warp::Warp;
 use crate::warp_map::{AffineWarp, BendMap, TaperMap, TwistMap, WarpMap};
-use glam::{DAffine3, Mat3};
-use std::sync::Arc;
+use glam::{DAffine3, Mat3, Vec3};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::sampler::TreeSampler;
 
-/// Looks for a node's cache.
-type FindCache<'a> = &'a dyn Fn(&Node) -> Option<Arc<NodeCache>>;
+/// The box of everything: where a limit that is not in the way is not 0.
+const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+
+/// How far the space above a print bed reaches, mm.
+const ABOVE_BED: f32 = 1e6;
 
 /// One operation; its operands follow each other in an arena of the same type.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +68,8 @@ impl Instr {
 /// A node compiled for evaluation: the [`Field`] of everything below it that is neither muted nor
 /// construction.
 ///
-/// Affine warps are folded into the leaves. Cost of making one: O(nodes).
+/// Affine warps are folded into the leaves. A support-free node is what its bake makes of it; without one, it is
+/// its child as drawn: see [`Self::unconstrained`]. Cost of making one: O(nodes).
 #[derive(Debug)]
 pub struct Tree {
     pub(crate) leaves: Vec<Leaf>,
@@ -80,18 +85,32 @@ pub struct Tree {
     pub(crate) arena: Vec<Instr>,
     pub(crate) root: Instr,
     support: Aabb,
+    /// The bakes that take part.
+    pub(crate) bakes: BakeStore,
+    unconstrained: usize,
     /// Evaluations of a primitive at a point so far, by samplers that are gone.
     pub(crate) evaluations: AtomicU64,
 }
 
 impl Tree {
     /// Compiles the tree below and including `node`, which must have passed the checks of its parameters.
+    ///
+    /// Support-free nodes are their children as drawn; [`BakeStore::tree`] makes trees that print.
     pub fn new(node: &Node) -> Self {
-        Self::compiled(node, &|_| None)
+        Self::compiled(node, BakeStore::default().kept())
     }
 
-    /// Compiles the tree with the caches that `find` knows for its nodes.
-    pub(crate) fn compiled(node: &Node, find: FindCache) -> Self {
+    /// Compiles the tree with what is known of its nodes.
+    pub(crate) fn compiled(node: &Node, kept: Kept) -> Self {
+        Self::compiled_in(node, &DAffine3::IDENTITY, kept)
+    }
+
+    /// The same for evaluation in another space, from which `node_from_world` leads to the node's.
+    pub(crate) fn compiled_in(node: &Node, node_from_world: &DAffine3, kept: Kept) -> Self {
+        let mut support = support(node);
+        if *node_from_world != DAffine3::IDENTITY && !support.is_empty() {
+            support = seen_from(node_from_world, &support);
+        }
         let mut tree = Self {
             leaves: Vec::new(),
             leaf_supports: Vec::new(),
@@ -101,11 +120,19 @@ impl Tree {
             caches: Vec::new(),
             arena: Vec::new(),
             root: Instr::EMPTY,
-            support: support(node),
+            support,
+            bakes: kept.bakes.clone(),
+            unconstrained: 0,
             evaluations: AtomicU64::new(0),
         };
-        tree.root = tree.compile(node, &DAffine3::IDENTITY, find);
+        tree.root = tree.compile(node, node_from_world, kept);
         tree
+    }
+
+    /// How many support-free nodes that are switched on are shown as drawn, because nobody baked them: this tree
+    /// may need supports.
+    pub fn unconstrained(&self) -> usize {
+        self.unconstrained
     }
 
     /// How often a primitive was evaluated at a point, by all samplers that are gone.
@@ -119,12 +146,12 @@ impl Tree {
     }
 
     /// Compiles a node whose space is reached by `node_from_world` from that of evaluation.
-    fn compile(&mut self, node: &Node, node_from_world: &DAffine3, find: FindCache) -> Instr {
+    fn compile(&mut self, node: &Node, node_from_world: &DAffine3, kept: Kept) -> Instr {
         if !node.is_heard() {
             return Instr::EMPTY;
         }
-        let exact = self.compile_shape(node, node_from_world, find);
-        match find(node) {
+        let exact = self.compile_shape(node, node_from_world, kept);
+        match (kept.cache)(node) {
             Some(cache) if exact.op != Op::Empty => {
                 let number = self.caches.len() as u32;
                 self.caches.push(CacheSite { cache, frame: Frame::new(*node_from_world), number });
@@ -134,42 +161,36 @@ impl Tree {
         }
     }
 
-    fn compile_shape(&mut self, node: &Node, node_from_world: &DAffine3, find: FindCache) -> Instr {
+    fn compile_shape(&mut self, node: &Node, node_from_world: &DAffine3, kept: Kept) -> Instr {
         match &node.shape {
             Shape::Primitive(primitive) => {
-                self.leaves.push(Leaf::new(primitive, node_from_world));
-                self.leaf_supports.push(seen_from(node_from_world, &leaf::support(primitive)));
-                Instr { op: Op::Leaf(self.leaves.len() as u32 - 1), first: 0, count: 0 }
+                let support = seen_from(node_from_world, &leaf::support(primitive));
+                self.add_leaf(Leaf::new(primitive, node_from_world), support)
             }
-            Shape::Warp(warp, child) => self.compile_warp(warp, child, node_from_world, find),
+            Shape::Warp(warp, child) => self.compile_warp(warp, child, node_from_world, kept),
+            Shape::SupportFree(rule, child) => self.compile_support_free(rule, child, node_from_world, kept),
             Shape::Operator(operator, children) => {
                 let heard = children.iter().filter(|child| child.is_heard());
                 let operands: Vec<Instr> =
-                    heard.map(|child| self.compile(child, node_from_world, find)).collect();
+                    heard.map(|child| self.compile(child, node_from_world, kept)).collect();
                 let minuend_muted = children.first().is_none_or(|first| !first.is_heard());
                 self.compile_operator(*operator, operands, minuend_muted, node_from_world)
             }
         }
     }
 
-    fn compile_warp(
-        &mut self,
-        warp: &Warp,
-        child: &Node,
-        node_from_world: &DAffine3,
-        find: FindCache,
-    ) -> Instr {
+    fn compile_warp(&mut self, warp: &Warp, child: &Node, node_from_world: &DAffine3, kept: Kept) -> Instr {
         if let Some(parent_from_child) = warp.parent_from_child() {
             let rows = DAffine3 {
                 matrix3: parent_from_child.matrix3.as_dmat3(),
                 translation: parent_from_child.translation.as_dvec3(),
             };
-            return self.compile(child, &(rows.inverse() * *node_from_world), find);
+            return self.compile(child, &(rows.inverse() * *node_from_world), kept);
         }
         let map = warp_map(warp);
         // What lies between this space and that of evaluation happens before the warp.
         let between = *node_from_world != DAffine3::IDENTITY;
-        let inner = self.compile(child, &DAffine3::IDENTITY, find);
+        let inner = self.compile(child, &DAffine3::IDENTITY, kept);
         if inner.op == Op::Empty {
             return Instr::EMPTY;
         }
@@ -184,6 +205,61 @@ impl Tree {
         self.warps.push(WarpMap::Affine(AffineWarp::new(node_from_world)));
         self.warp_supports.push(seen_from(node_from_world, &support));
         outer
+    }
+
+    /// `min(max(child, grown), limit)`, all three as leaves and operations like others.
+    fn compile_support_free(
+        &mut self,
+        rule: &SupportFree,
+        child: &NodeRef,
+        node_from_world: &DAffine3,
+        kept: Kept,
+    ) -> Instr {
+        let exact = self.compile(child, node_from_world, kept);
+        if rule.mode == SupportMode::Off || exact.op == Op::Empty {
+            return exact;
+        }
+        let Some(bake) = kept.bakes.find(rule, child) else {
+            self.unconstrained += 1;
+            return exact;
+        };
+        self.compile_bake(rule, bake, exact, node_from_world)
+    }
+
+    fn compile_bake(
+        &mut self,
+        rule: &SupportFree,
+        bake: &Bake,
+        exact: Instr,
+        node_from_world: &DAffine3,
+    ) -> Instr {
+        let image_from_world = rule.upright_from_child() * *node_from_world;
+        let mut result = exact;
+        if let Some(grown) = &bake.grown {
+            let leaf = self.add_leaf(Leaf::Voxels(Voxels::new(&image_from_world, grown.clone())), EVERYWHERE);
+            result = self.push(Op::Union, [result, leaf]);
+        }
+        let mut limits = vec![result];
+        if let Some(limit) = &bake.limit {
+            let voxels = Voxels::new(&image_from_world, limit.clone());
+            limits.push(self.add_leaf(Leaf::Voxels(voxels), EVERYWHERE));
+        }
+        if bake.cut_at_bed {
+            let above = Primitive::HalfSpace(HalfSpace {
+                point: Vec3::new(0.0, 0.0, rule.bed),
+                normal: Vec3::NEG_Z,
+                extent: ABOVE_BED,
+                falloff: GROWN_FALLOFF,
+            });
+            limits.push(self.add_leaf(Leaf::new(&above, node_from_world), EVERYWHERE));
+        }
+        if limits.len() == 1 { result } else { self.push(Op::Intersection, limits) }
+    }
+
+    fn add_leaf(&mut self, leaf: Leaf, support: Aabb) -> Instr {
+        self.leaves.push(leaf);
+        self.leaf_supports.push(support);
+        Instr { op: Op::Leaf(self.leaves.len() as u32 - 1), first: 0, count: 0 }
     }
 
     fn compile_operator(
@@ -282,6 +358,7 @@ pub fn support(node: &Node) -> Aabb {
     match &node.shape {
         Shape::Primitive(primitive) => leaf::support(primitive),
         Shape::Warp(warp, child) => warped_region(warp, &support(child)),
+        Shape::SupportFree(rule, child) => rule.support(&support(child)),
         Shape::Operator(operator, children) => {
             let mut boxes = children.iter().map(|child| (child.is_heard(), support(child)));
             match operator {

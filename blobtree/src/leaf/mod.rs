@@ -13,6 +13,7 @@ mod section;
 mod skeleton;
 mod sketched;
 mod solid;
+mod voxels;
 
 use crate::eval::Crease;
 use crate::falloff::Falloff;
@@ -33,6 +34,7 @@ use revolved::Revolved;
 pub(crate) use skeleton::PurePoint;
 use skeleton::{Circle, Line, Origin, Plate, PureSkeletal, Skeletal};
 use solid::{Fallen, Frustum, Ground, RoundBox, SharpBox, Spheroid, Tube};
+pub(crate) use voxels::Voxels;
 
 /// What every leaf can do, in the space of evaluation.
 pub(crate) trait Kernel: Send + Sync {
@@ -78,6 +80,7 @@ pub(crate) enum Leaf {
     Extrusion(Fallen<Extrusion>),
     Revolved(Fallen<Revolved>),
     Pipe(Fallen<Pipe>),
+    Voxels(Voxels),
 }
 
 /// Runs `$body` with `$kernel` bound to the leaf's own type, so that loops over samples are compiled for it.
@@ -107,6 +110,7 @@ macro_rules! with_kernel {
             $crate::leaf::Leaf::Extrusion($kernel) => $body,
             $crate::leaf::Leaf::Revolved($kernel) => $body,
             $crate::leaf::Leaf::Pipe($kernel) => $body,
+            $crate::leaf::Leaf::Voxels($kernel) => $body,
         }
     };
 }

@@ -46,6 +46,7 @@ pub(crate) fn numbers(node: &Node) -> Result<(), SceneProblem> {
     match &node.shape {
         Shape::Primitive(primitive) => Ok(primitive.check()?),
         Shape::Warp(warp, _) => Ok(warp.check()?),
+        Shape::SupportFree(rule, _) => Ok(rule.check()?),
         // A sharpness is checked where it is made.
         Shape::Operator(..) => Ok(()),
     }

@@ -45,8 +45,8 @@ pub const MAX_NODES: u64 = 1_000_000;
 /// Most nodes on the way from the root to a leaf, both included.
 pub const MAX_DEPTH: usize = 256;
 
-/// The names of all node types in scene files: primitives, operators, warps.
-pub const TYPE_NAMES: [&str; 29] = [
+/// The names of all node types in scene files: primitives, operators, warps, and the support-free node.
+pub const TYPE_NAMES: [&str; 30] = [
     "point",
     "segment",
     "polyline",
@@ -76,6 +76,7 @@ pub const TYPE_NAMES: [&str; 29] = [
     "taper",
     "twist",
     "bend",
+    "support_free",
 ];
 
 /// A tree with what a file keeps beside it. Cheap to clone: everything large is shared.

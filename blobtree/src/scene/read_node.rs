@@ -13,6 +13,7 @@ use crate::node::{Node, NodeRef, Shape};
 use crate::operator::{Operator, Sharpness};
 use crate::primitive::{Drawn, Primitive};
 use crate::sketched::{Drawing, Template};
+use crate::support_free::SupportFree;
 use crate::warp::Warp;
 use mesh::MeshDistance;
 use serde_json::{Map, Value};
@@ -23,8 +24,8 @@ type Fields = Map<String, Value>;
 
 /// The fields that every node may have.
 const COMMON: [&str; 5] = ["type", "name", "color", "muted", "construction"];
-/// Those and the warps' own.
-const WARP_COMMON: [&str; 6] = ["child", "type", "name", "color", "muted", "construction"];
+/// Those and what all nodes with one child have.
+const ONE_CHILD: [&str; 6] = ["child", "type", "name", "color", "muted", "construction"];
 /// The one that a shape without a node has, too.
 const BARE: [&str; 1] = ["type"];
 
@@ -49,6 +50,7 @@ enum Kind {
     Primitive,
     Operator(Operator),
     Warp,
+    SupportFree,
 }
 
 impl<'a> NodeReader<'a> {
@@ -97,6 +99,7 @@ impl<'a> NodeReader<'a> {
                 NewShape::Operator(operator)
             }
             Kind::Warp => NewShape::Warp(self.warp(&type_name, &mut fields, &BARE)?),
+            Kind::SupportFree => NewShape::SupportFree(self.rule(&mut fields, &BARE)?),
         };
         let mut node = Node::new(journal::childless(shape));
         self.complete(&mut node)?;
@@ -188,12 +191,16 @@ impl<'a> NodeReader<'a> {
                 (Shape::Operator(operator, children), size)
             }
             Kind::Warp => {
-                let expected = "the node that is warped";
-                let child =
-                    parameters::need(fields, "child", expected).map_err(|fault| self.fault_in(fault))?;
-                let warp = self.warp(&type_name, fields, &WARP_COMMON)?;
+                let child = self.only_child(fields, "the node that is warped")?;
+                let warp = self.warp(&type_name, fields, &ONE_CHILD)?;
                 let (child, size) = self.at(&[Step::key("child")], |reader| reader.node(child, depth + 1))?;
                 (Shape::Warp(warp, child), Size::over([size].into_iter()))
+            }
+            Kind::SupportFree => {
+                let child = self.only_child(fields, "the node that is to print without supports")?;
+                let rule = self.rule(fields, &ONE_CHILD)?;
+                let (child, size) = self.at(&[Step::key("child")], |reader| reader.node(child, depth + 1))?;
+                (Shape::SupportFree(rule, child), Size::over([size].into_iter()))
             }
         };
         node.shape = shape;
@@ -282,6 +289,7 @@ impl<'a> NodeReader<'a> {
             "sum" => Kind::Operator(Operator::Sum),
             "gradient_blend" => Kind::Operator(Operator::GradientBlend),
             "transform" | "affine" | "taper" | "twist" | "bend" => Kind::Warp,
+            "support_free" => Kind::SupportFree,
             other if TYPE_NAMES.contains(&other) => Kind::Primitive,
             other => return Err(at_type(parameters::unknown("node type", other, TYPE_NAMES.into_iter()))),
         };
@@ -314,6 +322,11 @@ impl<'a> NodeReader<'a> {
         Ok((children, Size::over(sizes.into_iter())))
     }
 
+    /// The value of a node's only child, taken out.
+    fn only_child(&self, fields: &mut Fields, expected: &str) -> Result<Value, Fault> {
+        parameters::need(fields, "child", expected).map_err(|fault| self.fault_in(fault))
+    }
+
     fn warp(&self, type_name: &str, fields: &mut Fields, others: &[&str]) -> Result<Warp, Fault> {
         let fields = std::mem::take(fields);
         let warp = match type_name {
@@ -324,6 +337,10 @@ impl<'a> NodeReader<'a> {
             _ => parameters::all(fields, others).map(Warp::Bend),
         };
         warp.map_err(|fault| self.fault_in(fault))
+    }
+
+    fn rule(&self, fields: &mut Fields, others: &[&str]) -> Result<SupportFree, Fault> {
+        parameters::all(std::mem::take(fields), others).map_err(|fault| self.fault_in(fault))
     }
 
     fn primitive(

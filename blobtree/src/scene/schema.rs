@@ -5,6 +5,7 @@ use crate::primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, Segment, Torus,
 };
 use crate::sketched::{Inflation, LinearSweep, PathSweep, Revolution};
+use crate::support_free::SupportFree;
 use crate::warp::{AffineMap, Bend, Taper, Transform, Twist};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
@@ -68,9 +69,10 @@ fn node(name: &str) -> Value {
         "taper" => parameters::<Taper>(),
         "twist" => parameters::<Twist>(),
         "bend" => parameters::<Bend>(),
+        "support_free" => parameters::<SupportFree>(),
         _ => operator(name),
     };
-    if matches!(name, "transform" | "affine" | "taper" | "twist" | "bend") {
+    if matches!(name, "transform" | "affine" | "taper" | "twist" | "bend" | "support_free") {
         own.insert("child".into(), json!({ "$ref": "#/$defs/node" }));
         required.push("child".into());
     }

@@ -6,6 +6,7 @@ use crate::primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, Primitive, Segment, Torus,
 };
 use crate::sketched::{Inflation, LinearSweep, PathSweep, Revolution};
+use crate::support_free::SupportFree;
 use crate::warp::{AffineMap, Bend, Taper, Transform, Twist, Warp};
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 use serde_json::ser::Formatter;
@@ -207,7 +208,7 @@ impl Serialize for Written<'_> {
                 _ => None,
             },
             child: match &node.shape {
-                Shape::Warp(_, child) => Some(Referred { node: child, names }),
+                Shape::Warp(_, child) | Shape::SupportFree(_, child) => Some(Referred { node: child, names }),
                 _ => None,
             },
             ..Fields::of(node)
@@ -308,6 +309,7 @@ enum Parameters<'a> {
     Taper(&'a Taper),
     Twist(&'a Twist),
     Bend(&'a Bend),
+    SupportFree(&'a SupportFree),
 }
 
 impl<'a> Parameters<'a> {
@@ -335,6 +337,7 @@ impl<'a> Parameters<'a> {
             Shape::Warp(Warp::Taper(w), _) => Self::Taper(w),
             Shape::Warp(Warp::Twist(w), _) => Self::Twist(w),
             Shape::Warp(Warp::Bend(w), _) => Self::Bend(w),
+            Shape::SupportFree(rule, _) => Self::SupportFree(rule),
         })
     }
 }

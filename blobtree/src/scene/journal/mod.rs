@@ -20,12 +20,12 @@ const FORMAT: &str = "trullo-journal";
 
 /// A shape as a line holds it; where it has children, with none that matter.
 pub(super) fn childless(shape: NewShape) -> Shape {
+    let nothing = || Node::new(Shape::Operator(Operator::Union, Vec::new())).into();
     match shape {
         NewShape::Primitive(primitive) => Shape::Primitive(primitive),
         NewShape::Operator(operator) => Shape::Operator(operator, Vec::new()),
-        NewShape::Warp(warp) => {
-            Shape::Warp(warp, Node::new(Shape::Operator(Operator::Union, Vec::new())).into())
-        }
+        NewShape::Warp(warp) => Shape::Warp(warp, nothing()),
+        NewShape::SupportFree(rule) => Shape::SupportFree(rule, nothing()),
     }
 }
 

@@ -131,9 +131,10 @@ impl Line<'_> {
         match self.shape()? {
             NewShape::Operator(operator) => Ok(Command::WrapInOperator { path, operator }),
             NewShape::Warp(warp) => Ok(Command::WrapInWarp { path, warp }),
+            NewShape::SupportFree(rule) => Ok(Command::WrapInSupportFree { path, rule }),
             NewShape::Primitive(primitive) => {
                 let found = format!("a {}", primitive.type_name());
-                let problem = parameters::wrong("shape", found, "an operator or a warp");
+                let problem = parameters::wrong("shape", found, "an operator, a warp or a support_free");
                 Err(Fault { steps: vec![Step::key("shape")], problem })
             }
         }

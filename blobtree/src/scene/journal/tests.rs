@@ -9,6 +9,7 @@ use crate::primitive::Primitive;
 use crate::random::{PolygonSources, RandomTree, polygon_template, stroke};
 use crate::scene::{MeshReference, NoSources, Scene, SceneProblem, SceneSources};
 use crate::sketched::{Drawing, Inflation, SketchPlane, Template};
+use crate::support_free::SupportFree;
 use fastrand::Rng;
 use glam::{Vec2, Vec3};
 use mesh::{Mesh, MeshDistance};
@@ -43,7 +44,7 @@ impl SceneSources for Sources {
 /// Trees of every kind of node.
 fn trees(seed: u64) -> RandomTree {
     let mut trees = RandomTree::new(seed);
-    (trees.depth, trees.mesh, trees.drawn) = (5, Some(imported()), true);
+    (trees.depth, trees.mesh, trees.drawn, trees.support_free) = (5, Some(imported()), true, true);
     trees
 }
 
@@ -90,7 +91,7 @@ impl OperatorOver for crate::node::Node {
 fn random_entry(rng: &mut Rng, trees: &mut RandomTree, scene: &Scene) -> JournalEntry {
     let (path, node) = place(rng, &scene.root);
     let (parent, index) = (place(rng, &scene.root).0, rng.usize(..4));
-    JournalEntry::Command(match rng.u32(..20) {
+    JournalEntry::Command(match rng.u32(..21) {
         0 | 1 => return JournalEntry::Undo,
         2 => return JournalEntry::Redo,
         3..6 => Command::Insert { parent, index, node: material(rng, trees, scene) },
@@ -106,6 +107,7 @@ fn random_entry(rng: &mut Rng, trees: &mut RandomTree, scene: &Scene) -> Journal
         16 => Command::SetColor { path, color: rng.bool().then(|| Color([rng.u8(..), 7, 0])) },
         17 => Command::SetMuted { path, muted: rng.bool() },
         18 => Command::SetConstruction { path, construction: rng.bool() },
+        19 => Command::WrapInSupportFree { path, rule: trees.rule() },
         _ => Command::SetTitle { title: rng.bool().then(|| format!("t{}", rng.u32(..9))) },
     })
 }
@@ -196,6 +198,13 @@ fn every_entry_has_the_line_that_the_format_describes() {
             Command::WrapInOperator { path: p(), operator: sharp },
             r#""do":"wrap","path":"/1","shape":{"type":"blend","sharpness":3}"#.into(),
         ),
+        (
+            Command::WrapInSupportFree {
+                path: p(),
+                rule: SupportFree { overhang_degrees: 50., ..SupportFree::default() },
+            },
+            r#""do":"wrap","path":"/1","shape":{"type":"support_free","overhang_degrees":50}"#.into(),
+        ),
         (Command::Unwrap { path: p() }, r#""do":"unwrap","path":"/1""#.into()),
         (Command::SetName { path: p(), name: None }, r#""do":"set_name","path":"/1""#.into()),
         (
@@ -264,7 +273,7 @@ fn lines_that_are_wrong_are_refused_with_the_place_and_the_reason() {
         ),
         (
             r#""do":"wrap","path":"/0","shape":{"type":"point","center":[0,0,0],"radius":1}"#,
-            "`shape` is a point, not an operator or a warp",
+            "`shape` is a point, not an operator, a warp or a support_free",
         ),
         (r#""do":"set_color","path":"/0","color":"red""#, "`color` is the text \"red\", not a colour"),
         (r#""do":"set_muted","path":"/0","muted":NaN"#, "not JSON"),

@@ -63,6 +63,9 @@ fn parts(command: &Command) -> (Line<'_>, With<'_>) {
         Command::WrapInWarp { path, warp } => {
             (Line::at("wrap", path), With::Shape(childless(NewShape::Warp(warp.clone()))))
         }
+        Command::WrapInSupportFree { path, rule } => {
+            (Line::at("wrap", path), With::Shape(childless(NewShape::SupportFree(*rule))))
+        }
         Command::Unwrap { path } => plain(Line::at("unwrap", path)),
         Command::SetShape { path, shape } => {
             (Line::at("set_shape", path), With::Shape(childless(shape.clone())))

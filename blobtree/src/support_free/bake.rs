@@ -1,0 +1,44 @@
+//! What an upper room makes of a support-free node's child.
+
+use super::{SupportFree, VoxelImage};
+use crate::field::Field;
+use std::sync::Arc;
+
+/// The work of a support-free node, done: its field is `min(max(child, grown), limit)`.
+///
+/// Both images are in the space of [`SupportFree::upright_from_child`]. Where nothing was changed they are
+/// [beyond](super::Beyond) their bricks, so that the node's field there is the child's own, to the last bit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bake {
+    /// The most that the field may be; none if nothing is taken away.
+    pub limit: Option<Arc<VoxelImage>>,
+    /// The field of the matter that was added; none if there is none.
+    pub grown: Option<Arc<VoxelImage>>,
+    /// Whether the child reaches below the bed, so that it is cut there.
+    pub cut_at_bed: bool,
+    /// How much was taken away above the bed, about, mm³.
+    pub removed_mm3: f64,
+    /// How much was added, about, mm³.
+    pub added_mm3: f64,
+}
+
+/// What blobtree needs from the rooms above for trees with support-free nodes.
+pub trait Baker {
+    /// Makes `child`, whose parameters are legal, print without supports. `child` is in the space of
+    /// [`SupportFree::upright_from_child`]; the mode is not [`Off`](super::SupportMode::Off).
+    ///
+    /// Errors: why there is no result.
+    fn bake(&self, rule: &SupportFree, child: &dyn Field) -> Result<Bake, BakeError>;
+}
+
+/// Why a support-free node could not be baked.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BakeError {
+    /// Somebody asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// The shape does not allow it; in words for the user.
+    #[error("{0}")]
+    Impossible(String),
+}
