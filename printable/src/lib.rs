@@ -13,6 +13,7 @@
 
 mod brush;
 pub mod check;
+mod rebake;
 mod rule;
 pub mod slices;
 mod support;
@@ -21,6 +22,7 @@ mod voxels;
 pub use brush::{
     Action, Brush, Dab, DabError, MAX_DABS, PressureRange, StrokeSample, StrokeShape, Tip, stroke,
 };
+pub use rebake::Rebaker;
 pub use rule::{LayerHeight, OverhangAngle, RuleError, SupportRule};
 pub use support::{
     Changes, Element, ElementError, GroundPaths, PathCost, PathMap, Paths, UnderBed, Why, add_supported,

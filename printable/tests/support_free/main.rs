@@ -1,0 +1,7 @@
+//! What a support-free node promises, judged by closed forms and by brute force.
+
+mod common;
+mod field;
+mod grow;
+mod store;
+mod trim;
