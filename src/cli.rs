@@ -12,7 +12,7 @@ const MOST_PIXELS: u32 = 1 << 23;
 /// Most worker threads that can be asked for.
 const MOST_THREADS: i64 = 1024;
 
-/// Shapes that always 3D-print without supports: sketch, evaluate, mesh, render, convert and check them.
+/// Shapes that always 3D-print without supports: sketch, constrain, evaluate, mesh, render, convert and check them.
 #[derive(Debug, Parser)]
 #[command(name = "trullo", version, arg_required_else_help = true, disable_help_subcommand = true)]
 #[command(
@@ -38,6 +38,14 @@ pub enum Verb {
     /// Turn a scene into a mesh for printing.
     #[command(after_help = "Example: trullo mesh snowman.trullo -o snowman.3mf --cell 0.4")]
     Mesh(MeshArgs),
+    /// Make a scene or mesh print without supports.
+    ///
+    /// What the layer below cannot carry is taken away (trim), or matter grows below it (grow), smoothly. A scene
+    /// keeps its parts: everything can still be changed, and the result follows. With the name of a mesh the result is
+    /// meshed at once.
+    #[command(after_help = "Examples:\n  trullo support-free snowman.trullo -o snowman.3mf\n  \
+        trullo support-free bunny.stl -o bunny-printable.stl --height 50 --drop --operator grow --max-overhang 50")]
+    SupportFree(SupportFreeArgs),
     /// Turn drawings into solids.
     ///
     /// Drawings are SVG pictures, doodles (.ndjson) or Trullo's own strokes (.json). An outline is blown up like
@@ -88,6 +96,8 @@ pub struct EvalArgs {
     #[arg(long)]
     pub explain: bool,
     #[command(flatten)]
+    pub constraint: ConstraintArgs,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -96,6 +106,8 @@ pub struct EvalArgs {
 pub struct TreeArgs {
     /// The scene file.
     pub scene: PathBuf,
+    #[command(flatten)]
+    pub constraint: ConstraintArgs,
     #[command(flatten)]
     pub common: Common,
 }
@@ -113,9 +125,6 @@ pub struct MeshArgs {
     /// Leave out triangles while the surface moves by no more than this, mm.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub simplify: Option<f64>,
-    /// Mesh the shape as it was drawn, even where it would need supports.
-    #[arg(long)]
-    pub no_constraint: bool,
     /// Check that the mesh prints without supports, and say so in the file, which must be .3mf. If it does not, it is
     /// written without, and the exit code is 1.
     #[arg(long)]
@@ -123,7 +132,67 @@ pub struct MeshArgs {
     #[command(flatten)]
     pub rule: RuleArgs,
     #[command(flatten)]
+    pub constraint: ConstraintArgs,
+    #[command(flatten)]
     pub common: Common,
+}
+
+/// `trullo support-free`.
+#[derive(Debug, Args)]
+pub struct SupportFreeArgs {
+    /// The scene or mesh.
+    pub input: PathBuf,
+    /// The scene to write, a .trullo file, or a mesh: .stl, .obj, .ply or .3mf.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// What happens where supports would be needed.
+    #[arg(long, value_name = "OPERATOR", value_enum, default_value_t)]
+    pub operator: SupportOperator,
+    /// Height of a layer, mm: 0.02 to 2.
+    #[arg(long, value_name = "MM", default_value_t = 0.25)]
+    pub layer_height: f32,
+    /// The largest overhang that prints, degrees from the vertical: 20 to 70.
+    #[arg(long, value_name = "DEGREES", default_value_t = 45.0)]
+    pub max_overhang: f32,
+    /// Scale a mesh to this height, mm.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub height: Option<f64>,
+    /// Lift or lower a mesh so that its lowest point lies on the bed.
+    #[arg(long)]
+    pub drop: bool,
+    #[command(flatten)]
+    pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// What happens where supports would be needed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum SupportOperator {
+    /// What the layer below cannot carry is taken away.
+    #[default]
+    Trim,
+    /// Matter grows below it.
+    Grow,
+}
+
+impl SupportOperator {
+    /// As in `--operator`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Trim => "trim",
+            Self::Grow => "grow",
+        }
+    }
+}
+
+impl From<SupportOperator> for blobtree::SupportMode {
+    fn from(operator: SupportOperator) -> Self {
+        match operator {
+            SupportOperator::Trim => Self::Trim,
+            SupportOperator::Grow => Self::Grow,
+        }
+    }
 }
 
 /// `trullo sketch`.
@@ -226,6 +295,8 @@ pub struct ConvertArgs {
     #[command(flatten)]
     pub resolution: ResolutionArgs,
     #[command(flatten)]
+    pub constraint: ConstraintArgs,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -250,6 +321,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub reading: ReadingArgs,
     #[command(flatten)]
+    pub constraint: ConstraintArgs,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -271,6 +344,8 @@ pub struct CheckArgs {
     pub reading: ReadingArgs,
     #[command(flatten)]
     pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub constraint: ConstraintArgs,
     #[command(flatten)]
     pub common: Common,
 }
@@ -299,6 +374,8 @@ pub struct SliceArgs {
     pub reading: ReadingArgs,
     #[command(flatten)]
     pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub constraint: ConstraintArgs,
     #[command(flatten)]
     pub common: Common,
 }
@@ -355,6 +432,14 @@ pub struct ReadingArgs {
     pub height: Option<f64>,
 }
 
+/// Whether support-free nodes are kept.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct ConstraintArgs {
+    /// Take the shape as it was drawn, even where it would need supports.
+    #[arg(long)]
+    pub no_constraint: bool,
+}
+
 /// How finely scenes are meshed.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct ResolutionArgs {
@@ -393,6 +478,7 @@ impl Verb {
             Self::Eval(a) => a.common,
             Self::Tree(a) => a.common,
             Self::Mesh(a) => a.common,
+            Self::SupportFree(a) => a.common,
             Self::Sketch(a) => a.common,
             Self::Convert(a) => a.common,
             Self::Render(a) => a.common,

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::output::{self, Report};
-use blobtree::{Drawing, MeshReference, Scene, SceneSources, Template};
+use blobtree::{Drawing, ImportedMesh, MeshReference, Scene, SceneSources, Template};
 use mesh::io::{Attachments, Format, Loaded, ReadLimits};
 use mesh::{Mesh, MeshDistance};
 use sha2::{Digest, Sha256};
@@ -199,6 +199,36 @@ fn sha256(file: &mut File, limit: u64) -> io::Result<String> {
     }
     file.rewind()?;
     Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+/// A mesh that was read from `path`, as a primitive of a scene whose file is in `folder`.
+///
+/// Errors: a mesh without triangles, a file that is gone, or none that can be named from the folder.
+pub fn imported_mesh(
+    path: &Path,
+    mesh: &Mesh,
+    folder: Option<&Path>,
+    falloff: f32,
+) -> Result<ImportedMesh, Failure> {
+    let distance = MeshDistance::new(mesh).map(Arc::new).map_err(|e| Failure::of(path, e))?;
+    let mut file = open_file(path).map_err(|what| Failure::of(path, what))?;
+    let hash = sha256(&mut file, ReadLimits::default().max_bytes);
+    let sha256 = hash.map_err(|e| Failure::of(path, output::told(&e)))?;
+    let file = match folder {
+        Some(folder) => seen_from(folder, path).map_err(|e| Failure::of(path, output::told(&e)))?,
+        None => path.display().to_string(),
+    };
+    Ok(ImportedMesh { file, sha256, falloff, distance })
+}
+
+/// The way from a folder to a file, as scenes write it.
+fn seen_from(folder: &Path, file: &Path) -> io::Result<String> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let (folder, file) = (folder.canonicalize()?, file.canonicalize()?);
+    let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
+    let up = folder.components().skip(common).map(|_| "..".to_owned());
+    let down = file.components().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
+    Ok(up.chain(down).collect::<Vec<_>>().join("/"))
 }
 
 /// What a 3MF file made from `scene` carries beside the mesh.

@@ -2,6 +2,7 @@
 
 mod certificate;
 mod cli;
+mod constraint;
 mod drawing;
 mod failure;
 mod field_picture;
@@ -94,6 +95,7 @@ fn run(verb: &Verb, cancel: &Cancel) -> Result<(Report, Timings), Failure> {
                 Verb::Eval(args) => verbs::eval::run(args, &mut job),
                 Verb::Tree(args) => verbs::tree::run(args, &mut job),
                 Verb::Mesh(args) => verbs::mesh::run(args, &mut job),
+                Verb::SupportFree(args) => verbs::support_free::run(args, &mut job),
                 Verb::Sketch(args) => verbs::sketch::run(args, &mut job),
                 Verb::Convert(args) => verbs::convert::run(args, &mut job),
                 Verb::Render(args) => verbs::render::run(args, &mut job),

@@ -1,6 +1,7 @@
 //! From a scene to a mesh that may be written, and from a mesh to a file.
 
-use crate::cli::ResolutionArgs;
+use crate::cli::{ConstraintArgs, ResolutionArgs};
+use crate::constraint;
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::resolution::cell_size;
@@ -18,24 +19,39 @@ pub struct Meshed {
     pub mesh: Mesh,
     /// The cell size used, mm.
     pub cell_mm: f32,
+    /// How many support-free nodes were left as drawn.
+    pub unconstrained: usize,
 }
 
-/// Meshes a scene. Stages "compile", "size" and "mesh".
+/// Meshes a scene. Stages "constrain", "compile", "size" and "mesh".
 ///
-/// Errors: a cell size that is too small for the shape; a shape without any solid.
+/// Errors: a support-free node that cannot be baked; and as [`mesh_tree`].
 pub fn mesh_scene(
     path: &Path,
     scene: &Scene,
     resolution: &ResolutionArgs,
+    constraint: ConstraintArgs,
     job: &mut Job,
 ) -> Result<Meshed, Failure> {
-    let tree = job.stage("compile", |_| Ok(Tree::new(&scene.root)))?;
+    let tree = constraint::compile(path, &scene.root, constraint, job)?;
+    mesh_tree(path, &tree, resolution, job)
+}
+
+/// Meshes a compiled scene. Stages "size" and "mesh".
+///
+/// Errors: a cell size that is too small for the shape; a shape without any solid.
+pub fn mesh_tree(
+    path: &Path,
+    tree: &Tree,
+    resolution: &ResolutionArgs,
+    job: &mut Job,
+) -> Result<Meshed, Failure> {
     let failed = |e| Failure::of_meshing(path, e);
-    let cell = job.stage("size", |_| cell_size(resolution, &tree).map_err(failed))?;
+    let cell = job.stage("size", |_| cell_size(resolution, tree).map_err(failed))?;
     job.stage("mesh", |watch| {
         let progress = |share| watch.report(share);
         let options = Options { cancel: Some(watch.cancel), progress: Some(&progress), ..Options::default() };
-        let mesh = Surface::build(&tree, cell, &options).map_err(failed)?.mesh();
+        let mesh = Surface::build(tree, cell, &options).map_err(failed)?.mesh();
         if mesh.triangles.is_empty() {
             let what = format!(
                 "the scene has no solid at a cell size of {} mm: it is empty, muted, or finer than that",
@@ -43,7 +59,7 @@ pub fn mesh_scene(
             );
             return Err(Failure::of(path, what));
         }
-        Ok(Meshed { mesh, cell_mm: cell.mm() })
+        Ok(Meshed { mesh, cell_mm: cell.mm(), unconstrained: tree.unconstrained() })
     })
 }
 

@@ -15,7 +15,7 @@ pub use camera::View;
 use crate::failure::Failure;
 use crate::job::{Job, Watch};
 use crate::resolution::solid_box;
-use blobtree::{Aabb, Color, Node, NodeRef, Shape, Tree, Warp};
+use blobtree::{Aabb, BakeStore, Color, Node, NodeRef, Shape, Warp};
 use buffer::{Buffer, Frame, Kind, RAYS, Sample};
 use camera::Camera;
 use glam::Vec3;
@@ -37,8 +37,8 @@ const PNG_OVERHEAD: usize = 4096;
 
 /// What is drawn.
 pub enum Subject<'a> {
-    /// A scene, by its tree.
-    Scene(&'a NodeRef),
+    /// A scene, by its tree and what its support-free nodes are baked to.
+    Scene(&'a NodeRef, &'a BakeStore),
     /// A mesh whose indices all exist.
     Mesh(&'a Mesh),
     /// Such a mesh tinted by its overhangs, with the largest that prints, radians from the vertical.
@@ -107,14 +107,14 @@ pub fn png(pixels: &[u8], [width, height]: [u32; 2]) -> Result<Vec<u8>, png::Enc
 
 /// A subject with what every picture of it needs.
 enum Prepared<'a> {
-    Scene(&'a NodeRef),
+    Scene(&'a NodeRef, &'a BakeStore),
     Mesh(Shaded<'a>, &'a Mesh, Paint),
 }
 
 impl<'a> Prepared<'a> {
     fn new(subject: &Subject<'a>) -> Self {
         match subject {
-            Subject::Scene(root) => Self::Scene(root),
+            Subject::Scene(root, bakes) => Self::Scene(root, bakes),
             Subject::Mesh(mesh) => Self::Mesh(Shaded::new(mesh), mesh, Paint::Plain(STONE.0)),
             Subject::Overhangs(mesh, limit) => {
                 let paint = Paint::Overhangs { limit: *limit, bed: mesh.bounds().min.z };
@@ -126,7 +126,7 @@ impl<'a> Prepared<'a> {
     /// The box of the solid, in the space of a camera or in the world.
     fn bounds(&self, camera: Option<&Camera>) -> Aabb {
         match self {
-            Self::Scene(root) => solid_box(&Tree::new(&seen_by(root, camera))),
+            Self::Scene(root, bakes) => solid_box(&bakes.compile(&seen_by(root, camera))),
             Self::Mesh(_, mesh, _) => {
                 let used = mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]);
                 match camera {
@@ -139,16 +139,16 @@ impl<'a> Prepared<'a> {
 
     fn draw(&self, camera: &Camera, frame: Frame, watch: &Watch) -> Result<Buffer, Failure> {
         match self {
-            Self::Scene(root) => {
+            Self::Scene(root, bakes) => {
                 let root = seen_by(root, Some(camera));
-                let tree = Tree::new(&root);
+                let tree = bakes.compile(&root);
                 let solid = solid_box(&tree);
                 if solid.size().max_element() / frame.pitch > cast::MOST_STEPS {
                     return Err(Failure::Input(
                         "the shape is too long and thin to be drawn from here".into(),
                     ));
                 }
-                cast::cast(&tree, solid, &Palette::new(&root), frame, watch)
+                cast::cast(&tree, solid, &Palette::new(&root, bakes), frame, watch)
             }
             Self::Mesh(shaded, _, paint) => shaded.draw(camera, *paint, frame, watch),
         }

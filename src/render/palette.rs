@@ -4,7 +4,7 @@
 //! closest to the surface's value is the one that made it: in a union the larger, in an intersection the
 //! smaller, in a cut the tool. Where parts blend, their colours do.
 
-use blobtree::{Aabb, Color, Field, ISO, Node, NodeRef, Operator, Sampler, Shape, Tree};
+use blobtree::{Aabb, BakeStore, Color, Field, ISO, Node, NodeRef, Operator, Sampler, Shape, Tree};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub struct Palette {
 
 impl Palette {
     /// The colours of the tree below and including `root`, in its parent's space.
-    pub fn new(root: &NodeRef) -> Self {
+    pub fn new(root: &NodeRef, bakes: &BakeStore) -> Self {
         let mut parts = Vec::new();
         collect(root, None, true, &mut Vec::new(), &mut parts);
         let mut grouped: Vec<(Color, Vec<NodeRef>)> = Vec::new();
@@ -42,7 +42,7 @@ impl Palette {
         // One colour needs no field.
         let alone = grouped.len() == 1;
         let field = |group: Vec<NodeRef>| if alone { Vec::new() } else { group };
-        let tree = |group| Tree::new(&Node::new(Shape::Operator(Operator::Union, field(group))));
+        let tree = |group| bakes.compile(&Node::new(Shape::Operator(Operator::Union, field(group))));
         Self { parts: grouped.into_iter().map(|(color, group)| (color, tree(group))).collect() }
     }
 

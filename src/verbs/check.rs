@@ -31,7 +31,8 @@ pub fn run(args: &CheckArgs, job: &mut Job) -> Result<Report, Failure> {
         match input::open(&args.input, args.reading.height, Prefer::Mesh, job, &mut report)? {
             Input::Mesh(loaded) => (loaded.mesh, loaded.attachments),
             Input::Scene(scene) => {
-                let meshed = meshing::mesh_scene(&args.input, &scene, &args.resolution, job)?;
+                let meshed =
+                    meshing::mesh_scene(&args.input, &scene, &args.resolution, args.constraint, job)?;
                 report.put("cell_mm", number(meshed.cell_mm));
                 (meshed.mesh, Attachments::default())
             }

@@ -24,7 +24,7 @@ pub fn run(args: &ConvertArgs, job: &mut Job) -> Result<Report, Failure> {
     match input::open(&args.input, args.reading.height, prefer, job, &mut report)? {
         Input::Scene(scene) if to_scene => write_scene(args, &scene, job, &mut report)?,
         Input::Scene(scene) => {
-            let meshed = meshing::mesh_scene(&args.input, &scene, &args.resolution, job)?;
+            let meshed = meshing::mesh_scene(&args.input, &scene, &args.resolution, args.constraint, job)?;
             let attachments = input::attachments(&args.input, &scene)?;
             meshing::write_mesh(&args.input, &args.output, &meshed.mesh, &attachments, job)?;
             tell(&mut report, &args.output, &meshed);

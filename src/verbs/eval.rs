@@ -2,10 +2,10 @@
 
 use crate::cli::EvalArgs;
 use crate::failure::Failure;
-use crate::input;
 use crate::job::Job;
 use crate::output::{Report, number, vector};
-use blobtree::{Field, ISO, Node, Part, Sample, Tree, explain};
+use crate::{constraint, input};
+use blobtree::{Field, ISO, Node, Part, Sample, explain_in};
 use glam::Vec3;
 use serde_json::{Value, json};
 
@@ -15,7 +15,10 @@ use serde_json::{Value, json};
 pub fn run(args: &EvalArgs, job: &mut Job) -> Result<Report, Failure> {
     let mut report = Report::default();
     let scene = input::open_scene(&args.scene, job)?;
-    let tree = job.stage("compile", |_| Ok(Tree::new(&scene.root)))?;
+    let tree = constraint::compile(&args.scene, &scene.root, args.constraint, job)?;
+    if tree.unconstrained() > 0 {
+        report.notices.push(constraint::UNCONSTRAINED.into());
+    }
     let samples = job.stage("eval", |_| {
         let mut samples = vec![Sample::default(); args.at.len()];
         tree.sampler().samples(&args.at, &mut samples);
@@ -31,7 +34,7 @@ pub fn run(args: &EvalArgs, job: &mut Job) -> Result<Report, Failure> {
             "inside": sample.value >= ISO,
         });
         if args.explain {
-            let parts = job.stage("explain", |_| Ok(explain(&scene.root, at)))?;
+            let parts = job.stage("explain", |_| Ok(explain_in(&tree, &scene.root, at)))?;
             let nodes = parts.iter().filter_map(|part| Some((part, part.path.find(&scene.root)?)));
             nodes.clone().for_each(|(part, node)| report.line(told_part(part, node)));
             point["nodes"] = nodes.map(|(part, node)| listed(part, node)).collect();

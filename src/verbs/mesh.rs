@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::meshing::{self, Meshed};
 use crate::output::{Report, check_writable, counted, number, vector};
-use crate::{certificate, input, output};
+use crate::{certificate, constraint, input, output};
 use mesh::io::Format;
 use mesh::simplify;
 use serde_json::json;
@@ -22,7 +22,7 @@ pub fn run(args: &MeshArgs, job: &mut Job) -> Result<Report, Failure> {
     }
     check_writable(&args.output)?;
     let scene = input::open_scene(&args.scene, job)?;
-    let mut meshed = meshing::mesh_scene(&args.scene, &scene, &args.resolution, job)?;
+    let mut meshed = meshing::mesh_scene(&args.scene, &scene, &args.resolution, args.constraint, job)?;
     if let Some(tolerance) = args.simplify {
         meshed.mesh = job.stage("simplify", |watch| {
             simplify(&meshed.mesh, tolerance, &|| watch.cancel.is_cancelled()).ok_or(Failure::Interrupted)
@@ -45,6 +45,9 @@ pub fn tell(report: &mut Report, output: &Path, meshed: &Meshed) {
     let mesh = &meshed.mesh;
     let (bounds, volume, area) = (mesh.bounds(), mesh.volume(), mesh.area());
     let size = bounds.size();
+    if meshed.unconstrained > 0 {
+        report.notices.push(constraint::UNCONSTRAINED.into());
+    }
     report.put("output", output.display().to_string());
     report.put("cell_mm", number(meshed.cell_mm));
     report.put("vertices", mesh.positions.len());

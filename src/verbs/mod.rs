@@ -7,4 +7,5 @@ pub mod mesh;
 pub mod render;
 pub mod sketch;
 pub mod slice;
+pub mod support_free;
 pub mod tree;

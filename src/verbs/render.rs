@@ -1,11 +1,13 @@
 //! `trullo render`: a picture of a scene or mesh.
 
 use crate::cli::RenderArgs;
+use crate::constraint;
 use crate::failure::Failure;
 use crate::input::{self, Input, Prefer};
 use crate::job::Job;
 use crate::output::{Report, check_is_png, check_writable};
 use crate::render::{self, Settings, Subject};
+use blobtree::BakeStore;
 
 /// Draws the input and writes a PNG file.
 ///
@@ -15,8 +17,12 @@ pub fn run(args: &RenderArgs, job: &mut Job) -> Result<Report, Failure> {
     check_is_png(&args.output)?;
     check_writable(&args.output)?;
     let input = input::open(&args.input, args.reading.height, Prefer::Scene, job, &mut report)?;
+    let bakes = match &input {
+        Input::Scene(scene) => constraint::bakes(&args.input, &scene.root, args.constraint, job)?,
+        Input::Mesh(_) => BakeStore::new(),
+    };
     let subject = match &input {
-        Input::Scene(scene) => Subject::Scene(&scene.root),
+        Input::Scene(scene) => Subject::Scene(&scene.root, &bakes),
         Input::Mesh(loaded) => Subject::Mesh(&loaded.mesh),
     };
     let settings = Settings { view: args.view, size: args.size, background: args.background };

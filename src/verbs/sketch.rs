@@ -1,6 +1,6 @@
 //! `trullo sketch`: drawings become the solids of a scene.
 
-use crate::cli::{SketchArgs, SolidKind};
+use crate::cli::{ConstraintArgs, SketchArgs, SolidKind};
 use crate::drawing::{self, Drawn, Solid};
 use crate::failure::Failure;
 use crate::job::Job;
@@ -162,7 +162,8 @@ fn write(
         report.line(format!("{}: {}", output.display(), made(&kinds)));
         return Ok(());
     }
-    let meshed = meshing::mesh_scene(&args.drawings[0], &scene, &args.resolution, job)?;
+    let meshed =
+        meshing::mesh_scene(&args.drawings[0], &scene, &args.resolution, ConstraintArgs::default(), job)?;
     let attachments = input::attachments(output, &scene)?;
     meshing::write_mesh(&args.drawings[0], output, &meshed.mesh, &attachments, job)?;
     mesh::tell(report, output, &meshed);

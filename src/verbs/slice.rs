@@ -25,7 +25,9 @@ pub fn run(args: &SliceArgs, job: &mut Job) -> Result<Report, Failure> {
     }
     let mesh = match input::open(&args.input, args.reading.height, Prefer::Mesh, job, &mut report)? {
         Input::Mesh(loaded) => loaded.mesh,
-        Input::Scene(scene) => meshing::mesh_scene(&args.input, &scene, &args.resolution, job)?.mesh,
+        Input::Scene(scene) => {
+            meshing::mesh_scene(&args.input, &scene, &args.resolution, args.constraint, job)?.mesh
+        }
     };
     let slices = slicing::slice(&mesh, args.layer_height, args.bed.into(), job)?;
     let slices = slices.map_err(|e| Failure::of(&args.input, e))?;

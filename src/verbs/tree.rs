@@ -2,11 +2,11 @@
 
 use crate::cli::TreeArgs;
 use crate::failure::Failure;
-use crate::input;
 use crate::job::Job;
 use crate::output::{Report, aabb, counted, short};
 use crate::resolution::solid_box;
-use blobtree::{Aabb, Node, NodePath, NodeRef, Shape, Tree};
+use crate::{constraint, input};
+use blobtree::{Aabb, Node, NodePath, NodeRef, Shape};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -27,12 +27,13 @@ struct Place<'a> {
 /// Errors: a scene that cannot be read.
 pub fn run(args: &TreeArgs, job: &mut Job) -> Result<Report, Failure> {
     let scene = input::open_scene(&args.scene, job)?;
+    let bakes = constraint::bakes(&args.scene, &scene.root, args.constraint, job)?;
     let (places, boxes) = job.stage("measure", |watch| {
         let mut places = Vec::new();
         collect(&scene.root, NodePath::default(), &mut Vec::new(), &mut places);
         let measured = places.par_iter().map(|place| {
             watch.go_on()?;
-            Ok(solid_box(&Tree::new(&in_world(place))))
+            Ok(solid_box(&bakes.compile(&in_world(place))))
         });
         let boxes = measured.collect::<Result<Vec<Aabb>, Failure>>()?;
         Ok((places, boxes))

@@ -1,0 +1,146 @@
+//! `trullo support-free`: a scene or mesh becomes one that prints without supports.
+
+use crate::cli::{ConstraintArgs, ResolutionArgs, SupportFreeArgs};
+use crate::constraint;
+use crate::failure::Failure;
+use crate::input::{self, Input, Prefer};
+use crate::job::Job;
+use crate::meshing;
+use crate::output::{Report, check_writable, number};
+use crate::resolution::cell_size;
+use crate::verbs::mesh::tell;
+use blobtree::build::{Build, primitive};
+use blobtree::{Bake, BakeStore, Node, NodeRef, Primitive, Scene, SupportFree, Tree};
+use glam::Vec3;
+use mesh::Mesh;
+use std::path::Path;
+
+/// How far the field of a mesh reaches beyond its surface, in layers: far enough to be cut smoothly.
+const FALLOFF_LAYERS: f32 = 8.0;
+
+/// Makes a scene or mesh support-free and writes a scene or a mesh.
+///
+/// Errors: an input that cannot be read, a shape of which nothing is left, a file that cannot be written.
+pub fn run(args: &SupportFreeArgs, job: &mut Job) -> Result<Report, Failure> {
+    let mut report = Report::default();
+    let to_scene = args.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("trullo"));
+    if !to_scene {
+        meshing::format_of_output(&args.output).map_err(|_| {
+            let what = "the name must end in .trullo for a scene, or in .stl, .obj, .ply or .3mf for a mesh";
+            Failure::of(&args.output, what)
+        })?;
+    }
+    check_writable(&args.output)?;
+    let rule = SupportFree {
+        mode: args.operator.into(),
+        overhang_degrees: args.max_overhang,
+        layer_height: args.layer_height,
+        bed: 0.0,
+    };
+    rule.check().map_err(|e| Failure::Input(e.to_string()))?;
+    let scene = match input::open(&args.input, None, Prefer::Scene, job, &mut report)? {
+        Input::Scene(scene) => constrained_scene(args, rule, scene)?,
+        Input::Mesh(loaded) => {
+            let node = mesh_node(args, &loaded.mesh, to_scene, job)?;
+            Scene { title: loaded.attachments.title, ..Scene::new(node.support_free(rule)) }
+        }
+    };
+    let kept = ConstraintArgs { no_constraint: false };
+    let bakes = constraint::bakes(&args.input, &scene.root, kept, job)?;
+    tell_bake(args, &bakes, &scene.root, &mut report);
+    if to_scene {
+        let text = job.stage("encode", |_| scene.to_text().map_err(|e| Failure::of(&args.input, e)))?;
+        job.write(&args.output, text.as_bytes())?;
+        report.put("output", args.output.display().to_string());
+        report.line(format!("{}: the support-free scene", args.output.display()));
+        return Ok(report);
+    }
+    let tree = job.stage("compile", |_| Ok(bakes.compile(&scene.root)))?;
+    let resolution = job.stage("size", |_| resolution(args, &tree))?;
+    let meshed = meshing::mesh_tree(&args.input, &tree, &resolution, job)
+        .map_err(|failure| nothing_left(args, &bakes, &scene.root).unwrap_or(failure))?;
+    let attachments = match &args.input {
+        path if is_scene(path) => input::attachments(path, &scene)?,
+        _ => mesh::io::Attachments { title: scene.title.clone(), ..Default::default() },
+    };
+    meshing::write_mesh(&args.input, &args.output, &meshed.mesh, &attachments, job)?;
+    tell(&mut report, &args.output, &meshed);
+    Ok(report)
+}
+
+/// The cell size that was asked for; else the usual one, but no wider than a layer is high, so that meshing leaves no
+/// ledges.
+fn resolution(args: &SupportFreeArgs, tree: &Tree) -> Result<ResolutionArgs, Failure> {
+    let asked = args.resolution;
+    if asked.cell.is_some() || asked.cells.is_some() {
+        return Ok(asked);
+    }
+    let usual = cell_size(&asked, tree).map_err(|e| Failure::of_meshing(&args.input, e))?;
+    Ok(ResolutionArgs { cell: Some(f64::from(usual.mm().min(args.layer_height))), cells: None })
+}
+
+fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("trullo"))
+}
+
+fn constrained_scene(args: &SupportFreeArgs, rule: SupportFree, scene: Scene) -> Result<Scene, Failure> {
+    if args.height.is_some() || args.drop {
+        let what = "a scene, which has its own size and place; --height and --drop are for meshes";
+        return Err(Failure::of(&args.input, what));
+    }
+    Ok(Scene { root: scene.root.clone().support_free(rule).into(), ..scene })
+}
+
+/// The mesh as a node, at the height and place that were asked for.
+fn mesh_node(args: &SupportFreeArgs, mesh: &Mesh, to_scene: bool, job: &mut Job) -> Result<Node, Failure> {
+    let folder = to_scene.then(|| args.output.parent().unwrap_or(Path::new("")));
+    let imported = job.stage("import", |_| {
+        input::imported_mesh(&args.input, mesh, folder, FALLOFF_LAYERS * args.layer_height)
+    })?;
+    let bounds = mesh.bounds();
+    let tall = f64::from(bounds.size().z);
+    let scale = match args.height {
+        Some(height) if tall > 0.0 && height.is_finite() => (height / tall) as f32,
+        Some(height) => {
+            let what = format!("flat, so it cannot be scaled to a height of {height} mm");
+            return Err(Failure::of(&args.input, what));
+        }
+        None => 1.0,
+    };
+    // The falloff is scaled, too.
+    let imported = blobtree::ImportedMesh { falloff: imported.falloff / scale, ..imported };
+    let mut node = primitive(Primitive::Mesh(imported));
+    if scale != 1.0 {
+        node = node.scale([scale; 3]);
+    }
+    let lowest = bounds.min.z * scale;
+    Ok(if args.drop && lowest != 0.0 { node.translate(Vec3::new(0.0, 0.0, -lowest)) } else { node })
+}
+
+/// What was taken away and added.
+fn tell_bake(args: &SupportFreeArgs, bakes: &BakeStore, root: &NodeRef, report: &mut Report) {
+    let nothing = Bake::default();
+    let bake = bakes.of(root).map_or(&nothing, |bake| bake);
+    report.put("operator", args.operator.name());
+    report.put("max_overhang_degrees", number(args.max_overhang));
+    report.put("layer_height_mm", number(args.layer_height));
+    report.put("removed_mm3", bake.removed_mm3);
+    report.put("added_mm3", bake.added_mm3);
+    report.put("cut_at_bed", bake.cut_at_bed);
+    report.line(format!(
+        "{}: {:.1} mm³ taken away, {:.1} mm³ added",
+        args.operator.name(),
+        bake.removed_mm3,
+        bake.added_mm3
+    ));
+    if bake.cut_at_bed {
+        report.notices.push("the shape reaches below the bed z = 0 and was cut there".into());
+    }
+}
+
+/// The reason if all of a shape was taken away.
+fn nothing_left(args: &SupportFreeArgs, bakes: &BakeStore, root: &NodeRef) -> Option<Failure> {
+    let bake = bakes.of(root)?;
+    let what = "nothing is left: no part of the shape stands on the bed z = 0; move it there, with --drop for a mesh";
+    (bake.removed_mm3 > 0.0 || bake.cut_at_bed).then(|| Failure::of(&args.input, what))
+}
