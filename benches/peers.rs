@@ -223,7 +223,9 @@ fn with_primitive_moved(node: &NodeRef, number: &mut Option<usize>, by: Vec3) ->
                 Shape::Operator(_, children) => {
                     children.iter_mut().for_each(|child| *child = with_primitive_moved(child, number, by));
                 }
-                Shape::Warp(_, child) => *child = with_primitive_moved(child, number, by),
+                Shape::Warp(_, child) | Shape::SupportFree(_, child) => {
+                    *child = with_primitive_moved(child, number, by);
+                }
                 Shape::Primitive(_) => unreachable!("primitives are dealt with above"),
             }
             // What does not hold the primitive stays the same node.

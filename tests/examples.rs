@@ -83,7 +83,7 @@ fn with(node: &NodeRef, path: &[usize], new: Node) -> NodeRef {
     let mut copy = Node::clone(node);
     match &mut copy.shape {
         Shape::Operator(_, children) => children[*first] = with(&children[*first], rest, new),
-        Shape::Warp(_, child) => *child = with(child, rest, new),
+        Shape::Warp(_, child) | Shape::SupportFree(_, child) => *child = with(child, rest, new),
         Shape::Primitive(_) => unreachable!("paths lead through inner nodes"),
     }
     copy.into()

@@ -95,6 +95,7 @@ fn command(root: &NodeRef, rng: &mut Rng, random: &mut RandomTree) -> Command {
                 Shape::Primitive(primitive) => NewShape::Primitive(dragged(primitive, rng)),
                 Shape::Operator(..) => NewShape::Operator(random.operator()),
                 Shape::Warp(..) => NewShape::Warp(random.warp()),
+                Shape::SupportFree(..) => NewShape::SupportFree(random.rule()),
             },
             path,
         },

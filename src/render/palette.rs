@@ -148,7 +148,7 @@ mod tests {
 
     /// Whether the surface of `root` at `p` has this colour, but for rounding and what others' edges mix in.
     fn is_at(color: [u8; 3], root: Node, p: [f32; 3]) -> bool {
-        let found = Palette::new(&root.into()).painter().colors(&[p.into()])[0];
+        let found = Palette::new(&root.into(), &BakeStore::new()).painter().colors(&[p.into()])[0];
         found.iter().zip(color).all(|(&a, b)| a.abs_diff(b) <= 2)
     }
 
