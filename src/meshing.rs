@@ -5,10 +5,10 @@ use crate::constraint;
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::resolution::cell_size;
-use blobtree::{Scene, Tree};
+use blobtree::{Node, Scene, Tree};
 use mesh::io::{Attachments, Format};
 use mesh::{Fault, Mesh, SelfIntersections, Validity};
-use polygonizer::{Options, Surface};
+use polygonizer::{CellSize, Options, Surface};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -23,9 +23,9 @@ pub struct Meshed {
     pub unconstrained: usize,
 }
 
-/// Meshes a scene. Stages "constrain", "compile", "size" and "mesh".
+/// Meshes a scene. Stages "compile", "size", "constrain" and "mesh".
 ///
-/// Errors: a support-free node that cannot be baked; and as [`mesh_tree`].
+/// Errors: a support-free node that cannot be baked; and as [`cell_of`] and [`mesh_tree`].
 pub fn mesh_scene(
     path: &Path,
     scene: &Scene,
@@ -33,21 +33,46 @@ pub fn mesh_scene(
     constraint: ConstraintArgs,
     job: &mut Job,
 ) -> Result<Meshed, Failure> {
-    let tree = constraint::compile(path, &scene.root, constraint, job)?;
-    mesh_tree(path, &tree, resolution, job)
+    let drawn = job.stage("compile", |_| Ok(Tree::new(&scene.root)))?;
+    if constraint.no_constraint || drawn.unconstrained() == 0 {
+        let cell =
+            job.stage("size", |_| cell_size(resolution, &drawn).map_err(|e| Failure::of_meshing(path, e)))?;
+        return mesh_tree(path, &drawn, cell, job);
+    }
+    let cell = cell_of(path, &scene.root, &drawn, resolution, job)?;
+    let bakes = constraint::bakes(path, &scene.root, constraint, Some(cell), job)?;
+    let tree = job.stage("compile", |_| Ok(bakes.compile(&scene.root)))?;
+    mesh_tree(path, &tree, cell, job)
 }
 
-/// Meshes a compiled scene. Stages "size" and "mesh".
+/// The cell size for a scene whose tree, as drawn, is `drawn`: the one that was asked for; else the usual one, but no
+/// wider than a layer of a support-free node is high, as coarser meshes leave ledges. Stage "size".
 ///
-/// Errors: a cell size that is too small for the shape; a shape without any solid.
-pub fn mesh_tree(
+/// Errors: a size that no cell can have.
+pub fn cell_of(
     path: &Path,
-    tree: &Tree,
+    root: &Node,
+    drawn: &Tree,
     resolution: &ResolutionArgs,
     job: &mut Job,
-) -> Result<Meshed, Failure> {
+) -> Result<CellSize, Failure> {
     let failed = |e| Failure::of_meshing(path, e);
-    let cell = job.stage("size", |_| cell_size(resolution, tree).map_err(failed))?;
+    job.stage("size", |_| {
+        let cell = cell_size(resolution, drawn).map_err(failed)?;
+        match constraint::finest_layer(root) {
+            Some(layer) if resolution.cell.is_none() && resolution.cells.is_none() => {
+                CellSize::from_mm(cell.mm().min(layer)).map_err(failed)
+            }
+            _ => Ok(cell),
+        }
+    })
+}
+
+/// Meshes a compiled scene. Stage "mesh".
+///
+/// Errors: a cell size that is too small for the shape; a shape without any solid.
+pub fn mesh_tree(path: &Path, tree: &Tree, cell: CellSize, job: &mut Job) -> Result<Meshed, Failure> {
+    let failed = |e| Failure::of_meshing(path, e);
     job.stage("mesh", |watch| {
         let progress = |share| watch.report(share);
         let options = Options { cancel: Some(watch.cancel), progress: Some(&progress), ..Options::default() };

@@ -18,7 +18,7 @@ pub fn run(args: &RenderArgs, job: &mut Job) -> Result<Report, Failure> {
     check_writable(&args.output)?;
     let input = input::open(&args.input, args.reading.height, Prefer::Scene, job, &mut report)?;
     let bakes = match &input {
-        Input::Scene(scene) => constraint::bakes(&args.input, &scene.root, args.constraint, job)?,
+        Input::Scene(scene) => constraint::bakes(&args.input, &scene.root, args.constraint, None, job)?,
         Input::Mesh(_) => BakeStore::new(),
     };
     let subject = match &input {

@@ -1,13 +1,12 @@
 //! `trullo support-free`: a scene or mesh becomes one that prints without supports.
 
-use crate::cli::{ConstraintArgs, ResolutionArgs, SupportFreeArgs};
+use crate::cli::{ConstraintArgs, SupportFreeArgs};
 use crate::constraint;
 use crate::failure::Failure;
 use crate::input::{self, Input, Prefer};
 use crate::job::Job;
 use crate::meshing;
 use crate::output::{Report, check_writable, number};
-use crate::resolution::cell_size;
 use crate::verbs::mesh::tell;
 use blobtree::build::{Build, primitive};
 use blobtree::{Bake, BakeStore, Node, NodeRef, Primitive, Scene, SupportFree, Tree};
@@ -46,18 +45,24 @@ pub fn run(args: &SupportFreeArgs, job: &mut Job) -> Result<Report, Failure> {
         }
     };
     let kept = ConstraintArgs { no_constraint: false };
-    let bakes = constraint::bakes(&args.input, &scene.root, kept, job)?;
+    let cell = match to_scene {
+        true => None,
+        false => {
+            let drawn = job.stage("compile", |_| Ok(Tree::new(&scene.root)))?;
+            Some(meshing::cell_of(&args.input, &scene.root, &drawn, &args.resolution, job)?)
+        }
+    };
+    let bakes = constraint::bakes(&args.input, &scene.root, kept, cell, job)?;
     tell_bake(args, &bakes, &scene.root, &mut report);
-    if to_scene {
+    let Some(cell) = cell else {
         let text = job.stage("encode", |_| scene.to_text().map_err(|e| Failure::of(&args.input, e)))?;
         job.write(&args.output, text.as_bytes())?;
         report.put("output", args.output.display().to_string());
         report.line(format!("{}: the support-free scene", args.output.display()));
         return Ok(report);
-    }
+    };
     let tree = job.stage("compile", |_| Ok(bakes.compile(&scene.root)))?;
-    let resolution = job.stage("size", |_| resolution(args, &tree))?;
-    let meshed = meshing::mesh_tree(&args.input, &tree, &resolution, job)
+    let meshed = meshing::mesh_tree(&args.input, &tree, cell, job)
         .map_err(|failure| nothing_left(args, &bakes, &scene.root).unwrap_or(failure))?;
     let attachments = match &args.input {
         path if is_scene(path) => input::attachments(path, &scene)?,
@@ -66,17 +71,6 @@ pub fn run(args: &SupportFreeArgs, job: &mut Job) -> Result<Report, Failure> {
     meshing::write_mesh(&args.input, &args.output, &meshed.mesh, &attachments, job)?;
     tell(&mut report, &args.output, &meshed);
     Ok(report)
-}
-
-/// The cell size that was asked for; else the usual one, but no wider than a layer is high, so that meshing leaves no
-/// ledges.
-fn resolution(args: &SupportFreeArgs, tree: &Tree) -> Result<ResolutionArgs, Failure> {
-    let asked = args.resolution;
-    if asked.cell.is_some() || asked.cells.is_some() {
-        return Ok(asked);
-    }
-    let usual = cell_size(&asked, tree).map_err(|e| Failure::of_meshing(&args.input, e))?;
-    Ok(ResolutionArgs { cell: Some(f64::from(usual.mm().min(args.layer_height))), cells: None })
 }
 
 fn is_scene(path: &Path) -> bool {

@@ -27,7 +27,7 @@ struct Place<'a> {
 /// Errors: a scene that cannot be read.
 pub fn run(args: &TreeArgs, job: &mut Job) -> Result<Report, Failure> {
     let scene = input::open_scene(&args.scene, job)?;
-    let bakes = constraint::bakes(&args.scene, &scene.root, args.constraint, job)?;
+    let bakes = constraint::bakes(&args.scene, &scene.root, args.constraint, None, job)?;
     let (places, boxes) = job.stage("measure", |watch| {
         let mut places = Vec::new();
         collect(&scene.root, NodePath::default(), &mut Vec::new(), &mut places);

@@ -10,6 +10,7 @@ mod models;
 mod peer_scenes;
 mod print_check;
 mod slicer;
+mod support_free;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -207,7 +207,7 @@ impl Tree {
         outer
     }
 
-    /// `min(max(child, grown), limit)`, all three as leaves and operations like others.
+    /// `min(max(child, grown), limit, dents)`, all as leaves and operations like others.
     fn compile_support_free(
         &mut self,
         rule: &SupportFree,
@@ -240,7 +240,7 @@ impl Tree {
             result = self.push(Op::Union, [result, leaf]);
         }
         let mut limits = vec![result];
-        if let Some(limit) = &bake.limit {
+        for limit in bake.limit.iter().chain(&bake.dents) {
             let voxels = Voxels::new(&image_from_world, limit.clone());
             limits.push(self.add_leaf(Leaf::Voxels(voxels), EVERYWHERE));
         }

@@ -1,17 +1,20 @@
 //! What an upper room makes of a support-free node's child.
 
 use super::{SupportFree, VoxelImage};
+use crate::eval::Tree;
 use crate::field::Field;
 use std::sync::Arc;
 
-/// The work of a support-free node, done: its field is `min(max(child, grown), limit)`.
+/// The work of a support-free node, done: its field is `min(max(child, grown), limit, dents)`.
 ///
-/// Both images are in the space of [`SupportFree::upright_from_child`]. Where nothing was changed they are
+/// All images are in the space of [`SupportFree::upright_from_child`]. Where nothing was changed they are
 /// [beyond](super::Beyond) their bricks, so that the node's field there is the child's own, to the last bit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bake {
     /// The most that the field may be; none if nothing is taken away.
     pub limit: Option<Arc<VoxelImage>>,
+    /// A further limit, where the solid was found to hang in spite of the first; none if it did not.
+    pub dents: Option<Arc<VoxelImage>>,
     /// The field of the matter that was added; none if there is none.
     pub grown: Option<Arc<VoxelImage>>,
     /// Whether the child reaches below the bed, so that it is cut there.
@@ -29,6 +32,19 @@ pub trait Baker {
     ///
     /// Errors: why there is no result.
     fn bake(&self, rule: &SupportFree, child: &dyn Field) -> Result<Bake, BakeError>;
+
+    /// Has a last look at the node that [`Self::bake`] made, in the node's own space, and mends its bake. `node`
+    /// compiles it with any bake. By default there is nothing to mend.
+    ///
+    /// Errors: as [`Self::bake`].
+    fn finish(
+        &self,
+        _rule: &SupportFree,
+        _node: &dyn Fn(&Bake) -> Tree,
+        bake: Bake,
+    ) -> Result<Bake, BakeError> {
+        Ok(bake)
+    }
 }
 
 /// Why a support-free node could not be baked.

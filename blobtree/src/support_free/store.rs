@@ -60,8 +60,15 @@ impl BakeStore {
         for (rule, child) in missing {
             if self.find(&rule, &child).is_none() {
                 let upright = Tree::compiled_in(&child, &rule.upright_from_child().inverse(), self.kept());
-                let bake = Arc::new(baker.bake(&rule, &upright)?);
-                self.bakes.insert(key(&rule, &child), (Arc::downgrade(&child), bake));
+                let bake = baker.bake(&rule, &upright)?;
+                let node = Node::new(Shape::SupportFree(rule, child.clone()));
+                let baked = |bake: &Bake| {
+                    let mut store = self.clone();
+                    store.insert(&rule, &child, bake.clone());
+                    store.compile(&node)
+                };
+                let bake = baker.finish(&rule, &baked, bake)?;
+                self.insert(&rule, &child, bake);
             }
         }
         Ok(())
@@ -78,6 +85,10 @@ impl BakeStore {
             Shape::SupportFree(rule, child) => self.find(rule, child),
             _ => None,
         }
+    }
+
+    fn insert(&mut self, rule: &SupportFree, child: &NodeRef, bake: Bake) {
+        self.bakes.insert(key(rule, child), (Arc::downgrade(child), Arc::new(bake)));
     }
 
     pub(crate) fn find(&self, rule: &SupportFree, child: &NodeRef) -> Option<&Arc<Bake>> {

@@ -3,5 +3,6 @@
 mod common;
 mod field;
 mod grow;
+mod settle;
 mod store;
 mod trim;

@@ -3,6 +3,7 @@
 use crate::common::{ball_on_stem, growing, trimming};
 use blobtree::build::{Build, cuboid, union};
 use blobtree::{Bake, BakeError, BakeStore, Baker, Field, Node, NodeRef, SupportFree};
+use polygonizer::Cancel;
 use printable::Rebaker;
 use std::cell::Cell;
 
@@ -58,7 +59,8 @@ fn one_thread_and_three_bake_the_same_bytes() {
 #[test]
 fn baking_stops_when_asked() {
     let root: NodeRef = ball_on_stem(2.0, 5.0).support_free(trimming(45.0, 0.25)).into();
-    let stop = || true;
+    let stop = Cancel::new();
+    stop.cancel();
     let result = BakeStore::new().bake(&root, &Rebaker::with_cancel(&stop));
     assert_eq!(result, Err(BakeError::Cancelled));
 }

@@ -9,7 +9,7 @@ use polygonizer::{CellSize, Options, Surface};
 #[test]
 fn the_overhang_let_through_is_the_one_that_was_set_in_sixteen_directions() {
     for degrees in [30.0_f32, 45.0, 60.0] {
-        for layer in [0.2, 0.25] {
+        for layer in [0.1, 0.2, 0.25] {
             // Steeper than any of these angles all around.
             let tree = constrained(ball_on_stem(3.0, 14.0), trimming(degrees, layer));
             let low = junction(3.0, 14.0) + 1.0;
@@ -41,8 +41,8 @@ fn slices_at_any_height_are_carried_by_those_below() {
             let slices = Slices::new(&tree, 0.25, offset, 8.0, 20.0, 0.04);
             // Half a pitch is the squares' own.
             let hanging = slices.unsupported(0.25 + 0.01 + 0.03);
-            // The blend's flat underside begins between two layers: cut beside those, a ledge is left.
-            let most = if number == 3 && offset != 0.125 { 0.6 } else { 0.15 };
+            // The blend's flat underside begins just above 0.2 + 0.25 k mm: cut there, a ledge is left.
+            let most = if number == 3 && offset == 0.2 { 0.85 } else { 0.15 };
             assert!(hanging < most, "scene {number} cut from {offset} mm on: {hanging} mm²");
         }
     }
@@ -105,13 +105,14 @@ fn far_from_what_was_taken_the_field_outside_is_the_childs_to_the_last_bit() {
 
 #[test]
 fn trimmed_surfaces_are_as_smooth_as_cones() {
-    for (stem, ball, degrees, layer) in [
-        (3.0, 7.0, 45.0_f32, 0.25),
-        (2.0, 9.0, 45.0, 0.25),
-        (4.0, 8.0, 45.0, 0.2),
-        (3.0, 12.0, 40.0, 0.25),
-        (3.0, 12.0, 55.0, 0.25),
-        (2.5, 10.0, 50.0, 0.2),
+    for (stem, ball, degrees, layer, most) in [
+        (3.0, 7.0, 45.0_f32, 0.25, 3.0),
+        // The thinner the stem, the fewer steps of the lattice around it.
+        (2.0, 9.0, 45.0, 0.25, 3.2),
+        (4.0, 8.0, 45.0, 0.2, 3.0),
+        (3.0, 12.0, 40.0, 0.25, 3.0),
+        (3.0, 12.0, 55.0, 0.25, 3.0),
+        (2.5, 10.0, 50.0, 0.2, 3.0),
     ] {
         let tree = constrained(ball_on_stem(stem, ball), trimming(degrees, layer));
         let low = junction(stem, ball) + 5.0 * layer;
@@ -129,7 +130,7 @@ fn trimmed_surfaces_are_as_smooth_as_cones() {
             }
         }
         let off = (sum / count as f32).sqrt();
-        assert!(off < 3.5, "stem {stem}, ball {ball}, {degrees}°: {off}°");
+        assert!(off < most, "stem {stem}, ball {ball}, {degrees}°: {off}°");
     }
 }
 
