@@ -14,16 +14,18 @@ const MOST_THREADS: i64 = 1024;
 
 /// Shapes that always 3D-print without supports: sketch, constrain, evaluate, mesh, render, convert and check them.
 #[derive(Debug, Parser)]
-#[command(name = "trullo", version, arg_required_else_help = true, disable_help_subcommand = true)]
+#[command(name = "trullo", version, disable_help_subcommand = true, args_conflicts_with_subcommands = true)]
 #[command(
     after_help = "Exit codes: 0 done, 1 the check found something, 2 bad input or usage, 3 interrupted.\n\
     Scenes are .trullo files, or 3MF files that Trullo wrote; meshes are STL, OBJ, PLY and 3MF.\n\
     Lengths are millimetres, and z points up from the bed."
 )]
 pub struct Cli {
-    /// What to do.
+    /// What to do without a window.
     #[command(subcommand)]
-    pub verb: Verb,
+    pub verb: Option<Verb>,
+    /// A scene, a mesh or a drawing to open in the modeler.
+    pub file: Option<PathBuf>,
 }
 
 /// What the program can do.

@@ -157,7 +157,7 @@ fn scale(path: &Path, mesh: &mut Mesh, height: f64) -> Result<(), Failure> {
 }
 
 /// Finds the meshes that a scene names, beside the scene's file, and solves its drawings.
-struct Beside<'a>(&'a Path);
+pub struct Beside<'a>(pub &'a Path);
 
 impl SceneSources for Beside<'_> {
     fn mesh(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {

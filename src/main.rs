@@ -1,5 +1,7 @@
-//! Trullo on the command line: reads arguments, opens files, asks the other rooms, and shows what they say.
+//! Trullo, the program: opens the modeler's window, or reads arguments, opens files, asks the other rooms, and shows what
+//! they say.
 
+mod app;
 mod certificate;
 mod cli;
 mod constraint;
@@ -28,6 +30,7 @@ use job::Job;
 use output::{Report, Style};
 use polygonizer::Cancel;
 use progress::Meter;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::PoisonError;
 use std::time::Duration;
@@ -41,7 +44,8 @@ const GRACE: Duration = Duration::from_millis(300);
 
 fn main() -> ExitCode {
     let verb = match Cli::try_parse() {
-        Ok(cli) => cli.verb,
+        Ok(Cli { verb: Some(verb), .. }) => verb,
+        Ok(Cli { file, .. }) => return model(file.as_deref()),
         Err(error) => return usage(&error),
     };
     let common = verb.common();
@@ -57,6 +61,17 @@ fn main() -> ExitCode {
         }
         Err(failure) => {
             output::show_failure(&failure.to_string(), common.json);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// Opens the window.
+fn model(file: Option<&Path>) -> ExitCode {
+    match app::run(file, app::sessions()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::show_failure(&failure.to_string(), false);
             ExitCode::from(failure.exit_code())
         }
     }

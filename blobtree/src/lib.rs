@@ -101,12 +101,14 @@ mod combine;
 mod document;
 mod eval;
 mod explain;
+mod extent;
 mod falloff;
 mod field;
 mod imported;
 mod leaf;
 mod node;
 mod operator;
+mod palette;
 mod pick;
 mod primitive;
 pub mod random;
@@ -126,10 +128,12 @@ pub use document::{
 };
 pub use eval::{Tree, support};
 pub use explain::{Part, explain, explain_in};
+pub use extent::solid_box;
 pub use field::{Aabb, BRICK, BRICK_SAMPLES, Brick, Field, ISO, Interval, Sample, Sampler};
 pub use imported::ImportedMesh;
 pub use node::{Color, Node, NodePath, NodePathError, NodeRef, Shape};
 pub use operator::{Operator, Sharpness};
+pub use palette::{Painter, Palette, STONE};
 pub use pick::{Hit, Pick, cast_ray, pick};
 pub use primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, PolylinePoint, Primitive,

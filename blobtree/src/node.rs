@@ -92,6 +92,17 @@ impl NodePath {
     pub fn find<'a>(&self, root: &'a NodeRef) -> Option<&'a NodeRef> {
         self.0.iter().try_fold(root, |node, &index| node.children().get(index))
     }
+
+    /// The node there by itself, heard and solid, where it stands in the root's space: with the warps above it, and
+    /// nothing beside it.
+    pub fn find_alone(&self, root: &NodeRef) -> Option<NodeRef> {
+        let heard = Node { muted: false, construction: false, ..(**self.find(root)?).clone() };
+        let above = (0..self.0.len()).rev().filter_map(|len| Self(self.0[..len].to_vec()).find(root));
+        Some(above.fold(heard.into(), |below, node| match &node.shape {
+            Shape::Warp(warp, _) => Node::new(Shape::Warp(warp.clone(), below)).into(),
+            _ => below,
+        }))
+    }
 }
 
 impl std::fmt::Display for NodePath {

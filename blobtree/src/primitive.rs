@@ -234,7 +234,7 @@ pub struct Cuboid {
     pub size: Vec3,
     /// Radius of the rounded edges, mm; 0 for sharp edges, at most half the shortest side.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 100_000.0))]
+    #[schemars(range(min = 0.0, max = 100_000.0), extend("default" = 0.0))]
     pub rounding: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 0.6008 times the shortest side.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -46,7 +46,7 @@ impl Warp {
     }
 
     /// The map from the child's space to the parent's, where it is affine.
-    pub(crate) fn parent_from_child(&self) -> Option<Affine3A> {
+    pub fn parent_from_child(&self) -> Option<Affine3A> {
         match self {
             Self::Transform(w) => Some(w.parent_from_child()),
             Self::Affine(w) => Some(w.parent_from_child()),
@@ -61,15 +61,15 @@ impl Warp {
 pub struct Transform {
     /// How far to move, mm.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("default" = [0.0, 0.0, 0.0]))]
     pub translate: Vec3,
     /// Angles about the x, y and z axis, applied in this order, degrees.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("default" = [0.0, 0.0, 0.0]))]
     pub rotate_degrees: Vec3,
     /// Factors along x, y and z, 0.001 to 1000; negative ones mirror.
     #[serde(default = "one", skip_serializing_if = "is_one")]
-    #[schemars(with = "[f32; 3]")]
+    #[schemars(with = "[f32; 3]", extend("default" = [1.0, 1.0, 1.0]))]
     pub scale: Vec3,
 }
 

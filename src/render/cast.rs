@@ -3,10 +3,9 @@
 //! The field stands in camera space, so that a brick of samples is 16 × 16 rays wide and 16 steps deep.
 
 use super::buffer::{Buffer, Frame, Kind, Sample};
-use super::palette::{Painter, Palette};
 use crate::failure::Failure;
 use crate::job::Watch;
-use blobtree::{Aabb, BRICK, BRICK_SAMPLES, Brick, Field, ISO, Sampler};
+use blobtree::{Aabb, BRICK, BRICK_SAMPLES, Brick, Field, ISO, Painter, Palette, Sampler};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};

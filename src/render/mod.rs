@@ -6,7 +6,6 @@ mod buffer;
 mod camera;
 mod cast;
 mod paint;
-mod palette;
 mod raster;
 mod shade;
 
@@ -14,14 +13,12 @@ pub use camera::View;
 
 use crate::failure::Failure;
 use crate::job::{Job, Watch};
-use crate::resolution::solid_box;
-use blobtree::{Aabb, BakeStore, Color, Node, NodeRef, Shape, Warp};
+use blobtree::{Aabb, BakeStore, Color, Node, NodeRef, Palette, STONE, Shape, Warp, solid_box};
 use buffer::{Buffer, Frame, Kind, RAYS, Sample};
 use camera::Camera;
 use glam::Vec3;
 use mesh::Mesh;
 use paint::Paint;
-use palette::{Palette, STONE};
 use raster::Shaded;
 use shade::{KEY_FROM, Stage};
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! Which colour a mesh has where.
 
-use super::palette::STONE;
+use blobtree::STONE;
 use glam::Vec3;
 
 /// What a mesh is painted with.

@@ -4,12 +4,10 @@ use crate::cli::TreeArgs;
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::output::{Report, aabb, counted, short};
-use crate::resolution::solid_box;
 use crate::{constraint, input};
-use blobtree::{Aabb, Node, NodePath, NodeRef, Shape};
+use blobtree::{Aabb, NodePath, NodeRef, solid_box};
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use std::sync::Arc;
 
 /// Most nodes that are listed: a scene can share one node in a million places.
 const MOST_LISTED: usize = 20_000;
@@ -18,8 +16,6 @@ const MOST_LISTED: usize = 20_000;
 struct Place<'a> {
     path: NodePath,
     node: &'a NodeRef,
-    /// The warps above it, outermost first.
-    warps: Vec<&'a NodeRef>,
 }
 
 /// Lists a scene's nodes.
@@ -30,10 +26,10 @@ pub fn run(args: &TreeArgs, job: &mut Job) -> Result<Report, Failure> {
     let bakes = constraint::bakes(&args.scene, &scene.root, args.constraint, None, job)?;
     let (places, boxes) = job.stage("measure", |watch| {
         let mut places = Vec::new();
-        collect(&scene.root, NodePath::default(), &mut Vec::new(), &mut places);
+        collect(&scene.root, NodePath::default(), &mut places);
         let measured = places.par_iter().map(|place| {
             watch.go_on()?;
-            Ok(solid_box(&bakes.compile(&in_world(place))))
+            Ok(place.path.find_alone(&scene.root).map_or(Aabb::EMPTY, |alone| solid_box(&bakes.compile(&alone))))
         });
         let boxes = measured.collect::<Result<Vec<Aabb>, Failure>>()?;
         Ok((places, boxes))
@@ -52,30 +48,14 @@ pub fn run(args: &TreeArgs, job: &mut Job) -> Result<Report, Failure> {
 }
 
 /// Parents before children, children in order.
-fn collect<'a>(node: &'a NodeRef, path: NodePath, warps: &mut Vec<&'a NodeRef>, places: &mut Vec<Place<'a>>) {
+fn collect<'a>(node: &'a NodeRef, path: NodePath, places: &mut Vec<Place<'a>>) {
     if places.len() == MOST_LISTED {
         return;
     }
-    places.push(Place { path: path.clone(), node, warps: warps.clone() });
-    let is_warp = matches!(node.shape, Shape::Warp(..));
-    if is_warp {
-        warps.push(node);
-    }
+    places.push(Place { path: path.clone(), node });
     for (index, child) in node.children().iter().enumerate() {
-        collect(child, path.child(index), warps, places);
+        collect(child, path.child(index), places);
     }
-    if is_warp {
-        warps.pop();
-    }
-}
-
-/// The node alone, heard, with the warps above it.
-fn in_world(place: &Place) -> Node {
-    let heard = Node { muted: false, construction: false, ..Node::clone(place.node) };
-    place.warps.iter().rev().fold(heard, |inner, warp| match &warp.shape {
-        Shape::Warp(warp, _) => Node::new(Shape::Warp(warp.clone(), Arc::new(inner))),
-        _ => inner,
-    })
 }
 
 /// `/0/2  sphere "head"  #ffffff  10 × 10 × 10 mm around 0, 0, 5`.

@@ -85,6 +85,13 @@ impl Document {
         Ok(change)
     }
 
+    /// What [`Self::apply`] would make of the scene, without a step in the history: for what is still being dragged.
+    ///
+    /// Errors and cost: as [`Self::apply`].
+    pub fn preview(&self, command: Command) -> Result<Scene, CommandError> {
+        apply::apply(self.scene(), command)
+    }
+
     /// Goes back one step; `None` at the first.
     pub fn undo(&mut self) -> Option<Change> {
         let to = self.now.checked_sub(1)?;

@@ -39,14 +39,15 @@ pub struct Inflation {
     /// How much thinner thin parts are than a cushion makes them: 0 not at all, 0.9 nearly as thin as they are
     /// narrow.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 0.9))]
+    #[schemars(range(min = 0.0, max = 0.9), extend("default" = 0.0))]
     pub contrast: f32,
     /// How much of the thickness follows the pen's pressure: 0 none, 1 all.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 1.0))]
+    #[schemars(range(min = 0.0, max = 1.0), extend("default" = 0.0))]
     pub pressure: f32,
     /// The shape across.
     #[serde(default, skip_serializing_if = "Profile::is_round")]
+    #[schemars(extend("default" = "round"))]
     pub profile: Profile,
     /// How far the influence reaches beyond the surface in the plane, mm, and in proportion across it.
     /// Default: 1.2017 times the drawing's depth.
@@ -90,12 +91,12 @@ pub struct LinearSweep {
     pub length: f32,
     /// How far the middle lies before the plane, towards whoever draws, mm.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = -100_000.0, max = 100_000.0))]
+    #[schemars(range(min = -100_000.0, max = 100_000.0), extend("default" = 0.0))]
     pub offset: f32,
     /// Radius of the rounded edges of the ends, mm; 0 for sharp ones, at most half the length. Beyond the
     /// drawing's depth it counts as that depth.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 50_000.0))]
+    #[schemars(range(min = 0.0, max = 50_000.0), extend("default" = 0.0))]
     pub fillet: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 1.2017 times the drawing's depth or half
     /// the length, whichever is smaller.
@@ -189,7 +190,7 @@ pub struct PathSweep {
     /// Radius of the rounded edges of the ends, mm; 0 for sharp ones. Beyond the drawing's depth it counts as
     /// that depth.
     #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 50_000.0))]
+    #[schemars(range(min = 0.0, max = 50_000.0), extend("default" = 0.0))]
     pub fillet: f32,
     /// How far the influence reaches beyond the surface, mm. Default: 1.2017 times the drawing's depth.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -2,7 +2,7 @@
 
 use super::companion::Companion;
 use super::rules::Icon;
-use super::surface::{Surface, drawn_on, part, plain};
+use super::surface::{Surface, drawn_on, plain};
 use super::{Request, tubes};
 use crate::solid::Outline;
 use crate::stroke::{SketchStroke, resample};
@@ -70,7 +70,7 @@ impl Sketched<'_> {
 
     /// A sweep through all of the target.
     fn cutter(&self, outline: &Outline) -> Option<LinearSweep> {
-        let target = part(self.request.root, &self.target)?;
+        let target = self.target.find_alone(self.request.root)?;
         let [near, far] = Surface::new(&target).depths(&self.request.view);
         let length = (far - near) * (1.0 + 2.0 * BEYOND);
         let offset = self.depth - 0.5 * (near + far);

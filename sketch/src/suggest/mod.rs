@@ -28,7 +28,7 @@ use companion::Companion;
 use glam::Vec3;
 use rules::Facts;
 use std::sync::Arc;
-use surface::{Surface, drawn_on, part};
+use surface::{Surface, drawn_on};
 
 /// A sketch over a model.
 #[derive(Clone, Copy, Debug)]
@@ -149,7 +149,7 @@ struct Lie {
 impl Lie {
     fn of(request: &Request) -> Self {
         let Request { sketch, view, root, selected, depth } = *request;
-        let selected = selected.filter(|path| !path.0.is_empty()).and_then(|path| part(root, path));
+        let selected = selected.filter(|path| !path.0.is_empty()).and_then(|path| path.find_alone(root));
         let model = selected.as_ref().unwrap_or(root);
         let on_model = Surface::new(model).found(&view, sketch);
         let all = drawn_on(root);

@@ -124,17 +124,6 @@ pub(super) fn plain(stroke: &SketchStroke) -> Stroke {
     Stroke { samples: stroke.samples.iter().map(|sample| sample.pen).collect(), eraser: false }
 }
 
-/// The node at `path`, heard, in the space of the whole model: with the warps above it, without the rest.
-pub(super) fn part(root: &NodeRef, path: &NodePath) -> Option<NodeRef> {
-    let node = path.find(root)?;
-    let heard: NodeRef = Node { muted: false, construction: false, ..(**node).clone() }.into();
-    let above = (0..path.0.len()).rev().map(|len| NodePath(path.0[..len].to_vec()));
-    Some(above.filter_map(|path| path.find(root)).fold(heard, |below, node| match &node.shape {
-        Shape::Warp(warp, _) => Node::new(Shape::Warp(warp.clone(), below)).into(),
-        _ => below,
-    }))
-}
-
 /// All that can be drawn on: the model and the construction nodes, whatever they are part of.
 pub(super) fn drawn_on(root: &NodeRef) -> NodeRef {
     let mut all = vec![root.clone()];
@@ -142,7 +131,7 @@ pub(super) fn drawn_on(root: &NodeRef) -> NodeRef {
     while let Some(path) = open.pop() {
         let Some(node) = path.find(root).filter(|node| !node.muted) else { continue };
         if node.construction {
-            all.extend(part(root, &path));
+            all.extend(path.find_alone(root));
         } else {
             open.extend((0..node.children().len()).rev().map(|i| path.child(i)));
         }

@@ -4,7 +4,11 @@
 //! closest to the surface's value is the one that made it: in a union the larger, in an intersection the
 //! smaller, in a cut the tool. Where parts blend, their colours do.
 
-use blobtree::{Aabb, BakeStore, Color, Field, ISO, Node, NodeRef, Operator, Sampler, Shape, Tree};
+use crate::eval::Tree;
+use crate::field::{Aabb, Field, ISO, Sampler};
+use crate::node::{Color, Node, NodeRef, Shape};
+use crate::operator::Operator;
+use crate::support_free::BakeStore;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -144,7 +148,7 @@ impl Painter<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use blobtree::build::*;
+    use crate::build::*;
 
     /// Whether the surface of `root` at `p` has this colour, but for rounding and what others' edges mix in.
     fn is_at(color: [u8; 3], root: Node, p: [f32; 3]) -> bool {

@@ -1,0 +1,31 @@
+//! The modeler without its window: what is on the table, what the hand and the pen do, and the panels around it.
+//!
+//! It draws on egui alone, so all of it can be tested without a screen or a graphics card. Two things come from the
+//! program around it: a [`desk::Desk`], which opens and writes files, and a [`stage::Stage`], which draws triangles.
+//!
+//! The way of the data, in each frame: what the background threads have made is taken in; keys, panels and the hand
+//! in the view do things to the [`workbench::Workbench`], whose every step is in the [`journal`] first; what has
+//! changed is asked of the background threads, [`solid`] for the surface and [`expecting`] for the sketch. The frame
+//! itself waits for neither.
+
+pub mod camera;
+pub mod desk;
+pub mod dialog;
+pub mod expecting;
+pub mod form;
+mod ground;
+pub mod journal;
+pub mod keys;
+mod modeler;
+mod newest;
+pub mod notices;
+pub mod pad;
+mod panels;
+pub mod placing;
+pub mod settings;
+pub mod solid;
+pub mod stage;
+mod view;
+pub mod workbench;
+
+pub use modeler::Modeler;

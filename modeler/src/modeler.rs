@@ -1,0 +1,457 @@
+//! All that the modeler is, and how its parts hear of each other.
+
+use crate::camera::{Camera, Side};
+use crate::desk::{Desk, Opened};
+use crate::dialog::{Dialog, Then};
+use crate::expecting::{Asked, Thinker};
+use crate::form::Form;
+use crate::notices::Notices;
+use crate::pad::{Pad, Stroked};
+use crate::panels;
+use crate::placing::{self, Motion};
+use crate::settings::Settings;
+use crate::solid::{Solid, SolidMaker};
+use crate::stage::Stage;
+use crate::view::{self, ViewState};
+use crate::workbench::{EditError, Workbench};
+use blobtree::{Aabb, Command, JournalEntry, NodePath, NodeRef, Scene, Shape, Tree, solid_box};
+use glam::Vec3;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The modeler, without a window.
+pub struct Modeler {
+    /// The document on the table.
+    pub bench: Workbench,
+    /// From where it is looked at.
+    pub camera: Camera,
+    /// The sketch in the air.
+    pub pad: Pad,
+    /// How the user likes to work.
+    pub settings: Settings,
+    /// What the user is told.
+    pub notices: Notices,
+    /// What is asked of the user.
+    pub dialog: Option<Dialog>,
+    /// Whether the user has selected what is selected. What is new is selected, too, but sketches mean the whole model
+    /// then.
+    selected_by_hand: bool,
+    /// Who opens and writes files.
+    pub desk: Box<dyn Desk>,
+    pub(crate) view: ViewState,
+    /// The node that the pointer is over, in the tree or in the view.
+    pub(crate) hovered: Option<NodePath>,
+    /// Where the selected and the hovered node are.
+    boxes: [NodeBox; 2],
+    /// The middle of the selected node before it was dragged.
+    held_middle: Option<Vec3>,
+    /// The form of the selected node, and the scene it was made for.
+    pub(crate) form: Option<(NodeRef, Form)>,
+    solids: SolidMaker,
+    solid: Option<Arc<Solid>>,
+    /// The tree of which the solid was asked for last.
+    asked: Option<NodeRef>,
+    thinker: Thinker,
+    /// Where sessions are kept; nowhere in tests that do not want them.
+    sessions: Option<PathBuf>,
+}
+
+impl Modeler {
+    /// A modeler with an empty page. `wake` is called when a background thread has something to show.
+    ///
+    /// Errors: a system without threads to spare.
+    pub fn new(
+        desk: Box<dyn Desk>,
+        sessions: Option<PathBuf>,
+        wake: Arc<dyn Fn() + Send + Sync>,
+    ) -> std::io::Result<Self> {
+        let (bench, unprotected) = Workbench::new(Workbench::empty_page(), None, sessions.as_deref())
+            .expect("an empty page is legal");
+        let mut notices = Notices::default();
+        if let Some(error) = unprotected {
+            notices.warn(EditError::from(error).to_string());
+        }
+        Ok(Self {
+            bench,
+            camera: Camera::default(),
+            pad: Pad::default(),
+            settings: Settings::default(),
+            notices,
+            dialog: None,
+            selected_by_hand: false,
+            desk,
+            view: ViewState::default(),
+            hovered: None,
+            boxes: Default::default(),
+            held_middle: None,
+            form: None,
+            solids: SolidMaker::start(wake.clone())?,
+            solid: None,
+            asked: None,
+            thinker: Thinker::start(wake)?,
+            sessions,
+        })
+    }
+
+    /// Shows everything, and does what the user wants.
+    pub fn ui(&mut self, ui: &mut egui::Ui, stage: &mut dyn Stage) {
+        self.hear();
+        self.measure();
+        crate::keys::heed(self, ui);
+        panels::show(self, ui);
+        view::show(self, ui, stage);
+        crate::dialog::show(self, ui);
+        self.notices.show(ui);
+        self.ask();
+    }
+
+    /// The solid as it is drawn.
+    pub fn solid(&self) -> Option<&Arc<Solid>> {
+        self.solid.as_ref()
+    }
+
+    /// Whether all that is shown is as fine as it gets, and nothing is being thought about.
+    pub fn is_at_rest(&self) -> bool {
+        let sketched = self.pad.sketch().is_empty() || self.pad.expectations.is_some();
+        let asked = self.asked.as_ref().is_some_and(|root| NodeRef::ptr_eq(root, &self.bench.shown().root));
+        sketched && asked && self.solids.is_done(self.solid.as_deref())
+    }
+
+    /// Takes in what the background threads have made.
+    fn hear(&mut self) {
+        if let Some(solid) = self.solids.ready() {
+            let first = self.solid.as_ref().is_none_or(|old| old.bounds.is_empty()) && self.view.shows_new;
+            if first && !solid.bounds.is_empty() {
+                self.camera.show(solid.bounds);
+                self.view.shows_new = false;
+            }
+            self.solid = Some(Arc::new(solid));
+        }
+        for thought in self.thinker.thoughts() {
+            self.pad.hear(thought);
+        }
+    }
+
+    /// Finds where the selected and the hovered node are.
+    fn measure(&mut self) {
+        let root = &self.bench.shown().root;
+        let paths = [self.bench.selected(), self.hovered.as_ref()];
+        for (known, path) in self.boxes.iter_mut().zip(paths) {
+            known.follow(root, path);
+        }
+        if NodeRef::ptr_eq(root, &self.bench.scene().root) {
+            self.held_middle = self.selected_box().map(|bounds| bounds.center());
+        }
+    }
+
+    /// Around the solid of the selected node, as it is shown, mm.
+    pub fn selected_box(&self) -> Option<Aabb> {
+        self.boxes[0].solid
+    }
+
+    /// The middle of the selected node before the hand took hold of it, mm.
+    pub(crate) fn held_middle(&self) -> Option<Vec3> {
+        self.held_middle
+    }
+
+    /// Around the solid of the node that the pointer is over in the tree, mm.
+    pub(crate) fn hovered_box(&self) -> Option<Aabb> {
+        self.boxes[1].solid
+    }
+
+    /// Asks the background threads for what has changed.
+    fn ask(&mut self) {
+        let root = &self.bench.shown().root;
+        if self.asked.as_ref().is_none_or(|asked| !NodeRef::ptr_eq(asked, root)) {
+            self.asked = Some(root.clone());
+            self.solids.ask(root);
+        }
+    }
+
+    /// Lets the thinker think about the sketch as it is.
+    pub(crate) fn think(&mut self) {
+        if let (Some(view), false) = (self.pad.drawn_in(), self.pad.sketch().is_empty()) {
+            self.thinker.ask(Asked {
+                sketch: self.pad.sketch().clone(),
+                view: *view,
+                root: self.bench.scene().root.clone(),
+                selected: self.bench.selected().cloned().filter(|_| self.selected_by_hand),
+                depth: self.pad.depth,
+            });
+        }
+    }
+
+    /// Does something to the document, and tells the user if it cannot be done.
+    pub fn act(&mut self, entry: JournalEntry) -> bool {
+        match self.bench.act(entry) {
+            Ok(_) => true,
+            Err(error) => {
+                let kept = matches!(error, EditError::Journal(_));
+                self.notices.warn(error.to_string());
+                kept
+            }
+        }
+    }
+
+    /// Carries out a command.
+    pub fn apply(&mut self, command: Command) -> bool {
+        self.act(JournalEntry::Command(command))
+    }
+
+    /// Takes back the last stroke of the sketch, else the last thing done to the document.
+    pub fn undo(&mut self) {
+        if self.pad.undo() {
+            self.think();
+        } else if self.bench.document().undo_names().next().is_some() {
+            self.act(JournalEntry::Undo);
+        }
+    }
+
+    /// Does again what was taken back.
+    pub fn redo(&mut self) {
+        if self.bench.document().redo_names().next().is_some() {
+            self.act(JournalEntry::Redo);
+        }
+    }
+
+    /// Goes to a step of the history: back by so many steps, or forward if less than 0.
+    pub fn go_back(&mut self, steps: isize) {
+        let entry = if steps > 0 { JournalEntry::Undo } else { JournalEntry::Redo };
+        for _ in 0..steps.unsigned_abs() {
+            if !self.act(entry.clone()) {
+                break;
+            }
+        }
+    }
+
+    /// Makes the sketch what the suggestion at this place says.
+    pub fn choose(&mut self, suggestion: usize) {
+        let chosen = self.pad.expectations.as_ref().and_then(|found| found.suggestions.get(suggestion));
+        let Some(chosen) = chosen.cloned() else { return };
+        let before = self.bench.scene().root.clone();
+        if self.apply(chosen.command) {
+            self.pad.clear();
+            self.bench.select(newest(&before, &self.bench.scene().root));
+            self.selected_by_hand = false;
+        }
+    }
+
+    /// What a finished stroke was.
+    pub(crate) fn stroked(&mut self, stroked: Stroked) {
+        match stroked {
+            Stroked::Sketched => self.think(),
+            Stroked::Pressed(button) => self.choose(button),
+            Stroked::Removed => self.remove_selected(),
+            Stroked::UndoneStep => self.undo(),
+            Stroked::ParentSelected => self.select_parent(),
+            Stroked::Nothing => {}
+        }
+    }
+
+    /// Selects a node, or nothing.
+    pub fn select(&mut self, path: Option<NodePath>) {
+        self.bench.select(path);
+        self.selected_by_hand = true;
+        self.think();
+    }
+
+    /// Selects the parent of what is selected; above the root, nothing.
+    pub fn select_parent(&mut self) {
+        self.select(self.bench.selected().and_then(NodePath::parent));
+    }
+
+    /// Takes away what is selected.
+    pub fn remove_selected(&mut self) {
+        if let Some(command) = self.bench.remove_selected() {
+            self.bench.select(None);
+            self.apply(command);
+        }
+    }
+
+    /// Puts a copy of what is selected beside it.
+    pub fn duplicate_selected(&mut self) {
+        let Some(command) = self.bench.duplicate_selected() else {
+            if self.bench.selected().is_some() {
+                self.notices.tell("Only parts of a union, a blend or a cut can have a copy beside them.");
+            }
+            return;
+        };
+        if self.apply(command) {
+            let copy = self.bench.selected().and_then(|path| {
+                let (last, rest) = path.0.split_last()?;
+                Some(NodePath([rest, &[last + 1]].concat()))
+            });
+            self.bench.select(copy);
+        }
+    }
+
+    /// Shows what is selected moved, or moves it if the hand has let go.
+    pub(crate) fn place(&mut self, motion: Motion, let_go: bool) {
+        let Some(path) = self.bench.selected().cloned() else { return };
+        let command = placing::command(&self.bench.scene().root, &path, motion);
+        match command {
+            Some(command) if let_go => {
+                self.apply(command);
+            }
+            Some(command) => {
+                if let Err(error) = self.bench.drag(Some(command)) {
+                    self.notices.tell(error.to_string());
+                }
+            }
+            None => self.notices.tell("What is inside a twist, a taper or a bend cannot be moved by hand."),
+        }
+    }
+
+    /// Where the solid of the scene is, mm; empty without one.
+    pub fn bounds(&self) -> Aabb {
+        self.solid.as_ref().map_or(Aabb::EMPTY, |solid| solid.bounds)
+    }
+
+    /// Looks from a named side.
+    pub fn look_from(&mut self, side: Side) {
+        self.camera.look_from(side);
+    }
+
+    /// Puts another document on the table; whoever asks has made sure that nothing is lost.
+    pub fn put(&mut self, scene: Scene, file: Option<PathBuf>) {
+        match Workbench::new(scene, file, self.sessions.as_deref()) {
+            Ok((bench, unprotected)) => {
+                std::mem::replace(&mut self.bench, bench).close();
+                if let Some(error) = unprotected {
+                    self.notices.warn(EditError::from(error).to_string());
+                }
+                self.changed_document();
+            }
+            Err(error) => self.notices.warn(error.to_string()),
+        }
+    }
+
+    /// Puts a document on the table that was brought back.
+    pub fn put_recovered(&mut self, bench: Workbench) {
+        std::mem::replace(&mut self.bench, bench).close();
+        self.changed_document();
+    }
+
+    fn changed_document(&mut self) {
+        self.pad.clear();
+        (self.form, self.hovered, self.solid) = (None, None, None);
+        self.view.shows_new = true;
+        self.camera.show(Aabb::EMPTY);
+    }
+
+    /// Opens a file: a scene or a mesh takes the table, a drawing becomes a sketch.
+    pub fn open(&mut self, path: &Path) {
+        match self.desk.open(path) {
+            Ok(Opened::Scene(scene, noticed)) => {
+                let is_scene = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("trullo"));
+                self.put(scene, is_scene.then(|| path.to_path_buf()));
+                noticed.into_iter().for_each(|notice| self.notices.tell(notice));
+            }
+            Ok(Opened::Drawing(sketch)) => {
+                self.pad.put(sketch, &self.camera.view(self.view.screen));
+                self.think();
+            }
+            Err(error) => self.notices.warn(error),
+        }
+    }
+
+    /// Saves the document to a file.
+    pub fn save_to(&mut self, file: PathBuf) -> bool {
+        match self.bench.save(file) {
+            Ok(()) => {
+                self.notices.tell("Saved.");
+                true
+            }
+            Err(error) => {
+                self.notices.warn(format!("Not saved: {error}"));
+                false
+            }
+        }
+    }
+
+    /// Opens a file, if nothing is lost by it.
+    pub fn begin_open(&mut self, file: PathBuf) {
+        Dialog::begin(self, Then::Open(file));
+    }
+
+    /// Ends, if nothing is lost by it: see [`Self::quits`].
+    pub fn quit(&mut self) {
+        Dialog::begin(self, Then::Quit);
+    }
+
+    /// Whether the window may close.
+    pub fn quits(&self) -> bool {
+        self.view.quits
+    }
+
+    /// Takes the document off the table for good; what is unsaved was thrown away by the user.
+    pub fn close(&mut self) {
+        if self.quits() {
+            let (bench, _) =
+                Workbench::new(Workbench::empty_page(), None, None).expect("an empty page is legal");
+            std::mem::replace(&mut self.bench, bench).close();
+        }
+    }
+
+    /// The window's title.
+    pub fn title(&self) -> String {
+        let name = self.bench.file().and_then(Path::file_name).map(|name| name.to_string_lossy());
+        let mark = if self.bench.is_unsaved() { "*" } else { "" };
+        name.map_or_else(|| format!("Trullo{mark}"), |name| format!("{name}{mark} - Trullo"))
+    }
+
+    /// Writes the mesh of the scene.
+    pub fn export_to(&mut self, path: &Path) {
+        match self.desk.export(self.bench.scene(), path, None) {
+            Ok(written) => self.notices.tell(written),
+            Err(error) => self.notices.warn(format!("Not exported: {error}")),
+        }
+    }
+}
+
+/// Where a node is, remembered for as long as neither it nor anything around it changes.
+#[derive(Debug, Default)]
+struct NodeBox {
+    of: Option<(NodeRef, NodePath)>,
+    /// Around its solid, mm; none for a node without one.
+    solid: Option<Aabb>,
+}
+
+impl NodeBox {
+    fn follow(&mut self, root: &NodeRef, path: Option<&NodePath>) {
+        let same = |(known, at): &(NodeRef, NodePath)| NodeRef::ptr_eq(known, root) && path == Some(at);
+        if path.is_some() && self.of.as_ref().is_some_and(same) {
+            return;
+        }
+        self.of = path.map(|path| (root.clone(), path.clone()));
+        let alone = path.and_then(|path| path.find_alone(root));
+        self.solid = alone.map(|alone| solid_box(&Tree::new(&alone))).filter(|solid| !solid.is_empty());
+    }
+}
+
+/// The primitive that a command brought: the last one of the new tree that is not in the old one.
+fn newest(old: &NodeRef, new: &NodeRef) -> Option<NodePath> {
+    let mut known = HashSet::new();
+    walk(old, &mut NodePath::default(), &mut |node, _| known.insert(Arc::as_ptr(node)));
+    let mut found = None;
+    walk(new, &mut NodePath::default(), &mut |node, path| {
+        let is_new = !known.contains(&Arc::as_ptr(node));
+        if is_new && matches!(node.shape, Shape::Primitive(_)) {
+            found = Some(path.clone());
+        }
+        is_new
+    });
+    found
+}
+
+/// Visits nodes, parents first, and goes below those for which `visit` says so.
+fn walk(node: &NodeRef, path: &mut NodePath, visit: &mut impl FnMut(&NodeRef, &NodePath) -> bool) {
+    if visit(node, path) {
+        for (index, child) in node.children().iter().enumerate() {
+            path.0.push(index);
+            walk(child, path, visit);
+            path.0.pop();
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! The bar above: files, undo, the pen's tools, and how the model is shown.
+
+use crate::dialog::{Dialog, Then};
+use crate::modeler::Modeler;
+use crate::settings::{Habit, Tool};
+use crate::stage::Look;
+use egui::{Button, Ui, Widget as _, global_theme_preference_buttons};
+
+/// Shows it.
+pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().button_padding = egui::vec2(9.0, 5.0);
+        ui.menu_button("File", |ui| files(modeler, ui));
+        ui.menu_button("Edit", |ui| edit(modeler, ui));
+        ui.menu_button("View", |ui| view(modeler, ui));
+        ui.separator();
+        let undo = modeler.bench.document().undo_names().next().map(str::to_owned);
+        let can_undo = undo.is_some() || !modeler.pad.is_empty();
+        let help = undo.map_or_else(|| "Undo the last stroke".into(), |name| format!("Undo: {name}"));
+        if ui.add_enabled(can_undo, Button::new("Undo")).on_hover_text(help).clicked() {
+            modeler.undo();
+        }
+        let redo = modeler.bench.document().redo_names().next().map(|name| format!("Redo: {name}"));
+        let button = ui.add_enabled(redo.is_some(), Button::new("Redo"));
+        if button.on_hover_text(redo.unwrap_or_default()).clicked() {
+            modeler.redo();
+        }
+        ui.separator();
+        for tool in Tool::ALL {
+            let button = Button::selectable(modeler.settings.tool == tool, tool.name()).ui(ui);
+            if button.on_hover_text(tool.help()).clicked() {
+                modeler.settings.tool = tool;
+            }
+        }
+        ui.separator();
+        if ui.button("Export").on_hover_text("Write a mesh for printing (Ctrl+E)").clicked() {
+            Dialog::begin_export(modeler);
+        }
+        if ui.button("?").on_hover_text("Keys and gestures").clicked() {
+            modeler.dialog = Some(Dialog::Help);
+        }
+    });
+}
+
+/// A line of a menu, with its keys if it has some.
+fn entry<'a>(text: &'a str, keys: &'a str) -> Button<'a> {
+    let button = Button::new(text);
+    if keys.is_empty() { button } else { button.shortcut_text(keys) }
+}
+
+fn files(modeler: &mut Modeler, ui: &mut Ui) {
+    let mut item = |ui: &mut Ui, text: &str, keys: &str, run: fn(&mut Modeler)| {
+        if ui.add(entry(text, keys)).clicked() {
+            run(modeler);
+            ui.close();
+        }
+    };
+    item(ui, "New page", "Ctrl+N", Dialog::begin_new);
+    item(ui, "Examples…", "", |m| m.dialog = Some(Dialog::Examples));
+    item(ui, "Open…", "Ctrl+O", |m| m.dialog = Some(Dialog::open()));
+    ui.separator();
+    item(ui, "Save", "Ctrl+S", |m| Dialog::begin_save(m, false));
+    item(ui, "Save as…", "Ctrl+Shift+S", |m| Dialog::begin_save(m, true));
+    item(ui, "Export…", "Ctrl+E", Dialog::begin_export);
+    ui.separator();
+    item(ui, "Quit", "", |m| Dialog::begin(m, Then::Quit));
+}
+
+fn edit(modeler: &mut Modeler, ui: &mut Ui) {
+    let selected = modeler.bench.selected().is_some();
+    let mut item = |ui: &mut Ui, text: &str, keys: &str, enabled: bool, run: fn(&mut Modeler)| {
+        if ui.add_enabled(enabled, entry(text, keys)).clicked() {
+            run(modeler);
+            ui.close();
+        }
+    };
+    item(ui, "Undo", "Ctrl+Z", true, Modeler::undo);
+    item(ui, "Redo", "Ctrl+Y", true, Modeler::redo);
+    ui.separator();
+    item(ui, "Duplicate", "Ctrl+D", selected, Modeler::duplicate_selected);
+    item(ui, "Remove", "Delete", selected, Modeler::remove_selected);
+    item(ui, "Select the parent", "P", selected, Modeler::select_parent);
+}
+
+fn view(modeler: &mut Modeler, ui: &mut Ui) {
+    let settings = &mut modeler.settings;
+    for look in Look::ALL {
+        ui.radio_value(&mut settings.look, look, look.name());
+    }
+    ui.separator();
+    ui.checkbox(&mut settings.shows_overhang, "Tint overhangs");
+    let label = ui.label("leaning out by more than");
+    let angle = egui::DragValue::new(&mut settings.overhang).range(20.0..=70.0).suffix("°").ui(ui);
+    angle.labelled_by(label.id);
+    ui.checkbox(&mut settings.shows_ground, "Ground and printer's room");
+    ui.checkbox(&mut settings.left_handed, "For left-handed people");
+    ui.separator();
+    ui.menu_button("Mouse", |ui| {
+        for habit in Habit::ALL {
+            ui.radio_value(&mut settings.habit, habit, habit.name());
+        }
+    });
+    ui.menu_button("Light and dark", global_theme_preference_buttons);
+    let mut zoom = ui.ctx().zoom_factor();
+    let label = ui.label("Size of everything");
+    if egui::DragValue::new(&mut zoom).range(0.6..=2.5).speed(0.01).ui(ui).labelled_by(label.id).changed() {
+        ui.ctx().set_zoom_factor(zoom);
+    }
+}

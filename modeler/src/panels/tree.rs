@@ -1,0 +1,157 @@
+//! The tree: what the model is made of, to be selected, named, muted, coloured and moved about.
+
+use crate::modeler::Modeler;
+use blobtree::{Color, Command, Node, NodePath, NodeRef, Operator, Shape, Sharpness};
+use egui::{Color32, Id, Response, RichText, ScrollArea, Sense, Ui, collapsing_header};
+
+/// Nodes below which branches begin closed.
+const OPEN_UP_TO: usize = 40;
+
+/// What is done with a node that is dragged onto another.
+#[derive(Clone, Debug, PartialEq)]
+struct Dragged(NodePath);
+
+/// What was done in the tree.
+#[derive(Default)]
+struct Done {
+    selected: Option<NodePath>,
+    hovered: Option<NodePath>,
+    command: Option<Command>,
+}
+
+/// Shows it.
+pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
+    ui.strong("Parts");
+    let root = modeler.bench.scene().root.clone();
+    let mut done = Done::default();
+    ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+        if root.children().is_empty() && matches!(root.shape, Shape::Operator(..)) {
+            ui.weak("Nothing yet. Draw a closed outline in the middle.");
+        } else {
+            branch(modeler, ui, &root, NodePath::default(), &mut done);
+        }
+    });
+    modeler.hovered = done.hovered;
+    if let Some(path) = done.selected {
+        modeler.select(Some(path));
+    }
+    if let Some(command) = done.command {
+        modeler.apply(command);
+    }
+}
+
+fn branch(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: NodePath, done: &mut Done) {
+    if node.children().is_empty() {
+        ui.horizontal(|ui| {
+            ui.add_space(ui.spacing().indent);
+            row(modeler, ui, node, &path, done);
+        });
+        return;
+    }
+    let id = Id::unique("branch").with(&path);
+    let open = path.0.len() < 2 || node.children().len() <= OPEN_UP_TO && path.0.len() < 5;
+    let state = collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, open);
+    state.show_header(ui, |ui| row(modeler, ui, node, &path, done)).body(|ui| {
+        for (index, child) in node.children().iter().enumerate() {
+            branch(modeler, ui, child, path.child(index), done);
+        }
+    });
+}
+
+fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &mut Done) {
+    let is_selected = modeler.bench.selected() == Some(path);
+    let name = title(node);
+    let mut text = RichText::new(&name);
+    if !node.is_heard() {
+        text = text.weak().strikethrough();
+    }
+    if let Some(Color([r, g, b])) = node.color {
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 14.0), Sense::hover());
+        ui.painter().rect_filled(rect.shrink(1.0), 2.0, Color32::from_rgb(r, g, b));
+    }
+    let button = ui.add(egui::Button::selectable(is_selected, text).sense(Sense::click_and_drag()));
+    button.dnd_set_drag_payload(Dragged(path.clone()));
+    if button.hovered() {
+        done.hovered = Some(path.clone());
+    }
+    if button.clicked() {
+        done.selected = Some(path.clone());
+    }
+    dropped(node, path, &button, ui, done);
+    button.context_menu(|ui| menu(ui, node, path, done));
+}
+
+/// Takes in a node that is dropped on this one: an operator gets it as its last child, others as their neighbour.
+fn dropped(node: &Node, path: &NodePath, button: &Response, ui: &Ui, done: &mut Done) {
+    if button.dnd_hover_payload::<Dragged>().is_some() {
+        ui.painter().rect_stroke(
+            button.rect,
+            3.0,
+            egui::Stroke::new(2.0, ui.visuals().selection.stroke.color),
+            egui::StrokeKind::Outside,
+        );
+    }
+    let Some(dragged) = button.dnd_release_payload::<Dragged>().filter(|dragged| dragged.0 != *path) else {
+        return;
+    };
+    let place = match (&node.shape, path.parent(), path.0.last()) {
+        (Shape::Operator(_, children), _, _) => Some((path.clone(), children.len())),
+        (_, Some(parent), Some(&index)) => Some((parent, index + 1)),
+        _ => None,
+    };
+    done.command = place.map(|(parent, index)| Command::Move { from: dragged.0.clone(), parent, index });
+}
+
+fn menu(ui: &mut Ui, node: &Node, path: &NodePath, done: &mut Done) {
+    let mut item = |ui: &mut Ui, text: &str, command: Command| {
+        if ui.button(text).clicked() {
+            done.command = Some(command);
+            ui.close();
+        }
+    };
+    let (muted, construction) = (!node.muted, !node.construction);
+    item(ui, if muted { "Mute" } else { "Unmute" }, Command::SetMuted { path: path.clone(), muted });
+    let word = if construction { "Only to draw on" } else { "Part of the solid" };
+    item(ui, word, Command::SetConstruction { path: path.clone(), construction });
+    ui.menu_button("Put into", |ui| {
+        for (name, operator) in operators() {
+            item(ui, name, Command::WrapInOperator { path: path.clone(), operator });
+        }
+    });
+    if node.children().len() == 1 {
+        item(ui, "Take out of here", Command::Unwrap { path: path.clone() });
+    }
+    if !path.0.is_empty() {
+        item(ui, "Remove", Command::Remove { path: path.clone() });
+    }
+}
+
+/// The operators with the names that the user reads.
+pub fn operators() -> [(&'static str, Operator); 8] {
+    [
+        ("Together", Operator::Union),
+        ("Blended", Operator::Blend(Sharpness::DEFAULT)),
+        ("Blended where they meet", Operator::GradientBlend),
+        ("Blended widely", Operator::Sum),
+        ("First without the others", Operator::Difference),
+        ("First without the others, soft", Operator::BlendDifference(Sharpness::DEFAULT)),
+        ("What they share", Operator::Intersection),
+        ("What they share, soft", Operator::BlendIntersection(Sharpness::DEFAULT)),
+    ]
+}
+
+/// What the user reads for a node: its name, else what it is.
+pub fn title(node: &Node) -> String {
+    if let Some(name) = &node.name {
+        return name.clone();
+    }
+    if let Shape::Operator(operator, _) = &node.shape {
+        let same = |other: &Operator| std::mem::discriminant(other) == std::mem::discriminant(operator);
+        if let Some((name, _)) = operators().into_iter().find(|(_, other)| same(other)) {
+            return name.into();
+        }
+    }
+    let type_name = node.type_name().replace('_', " ");
+    let mut letters = type_name.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}

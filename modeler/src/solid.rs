@@ -1,0 +1,242 @@
+//! The solid as it is drawn, made in the background: coarse at once, fine when nothing else is to do.
+
+use crate::newest::{Answering, Newest};
+use blobtree::{Aabb, BakeStore, Field, NodeRef, Palette, Tree, changed_region};
+use glam::Vec3;
+use polygonizer::{Cancel, CellSize, Options, Surface, VertexKind};
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Cells along the longest side: of what is shown at once, and of what is shown when there is time.
+const CELLS: [f32; 2] = [64.0, 192.0];
+
+/// How much larger or smaller cells may be than those are before all is made anew, so that a drag which changes the
+/// size a little follows the change alone.
+const SLACK: f32 = 1.5;
+
+/// How long nothing new must be asked before the fine surface is begun.
+const REST: Duration = Duration::from_millis(150);
+
+/// Points that are coloured together.
+const TOGETHER: usize = 256;
+
+/// A corner of a triangle, as the graphics card takes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Corner {
+    /// mm.
+    pub position: [f32; 3],
+    /// Unit, outwards; that of the triangle where it meets a sharp edge.
+    pub normal: [f32; 3],
+    /// sRGB, and the level: 0 for the coarse surface, 1 for the fine one.
+    pub color: [u8; 4],
+}
+
+/// A solid ready to be drawn.
+#[derive(Debug)]
+pub struct Solid {
+    /// Which of the solids asked for it is.
+    pub version: u64,
+    /// Three for each triangle, counter-clockwise seen from outside.
+    pub corners: Vec<Corner>,
+    /// Around it, mm; empty without any.
+    pub bounds: Aabb,
+    /// The size of its cells, mm.
+    pub cell: f32,
+    /// Whether it is the finest that is made.
+    pub is_fine: bool,
+    /// How many of its support-free nodes are shown as drawn.
+    pub unconstrained: usize,
+    /// How long it took, from question to answer.
+    pub took: Duration,
+}
+
+/// A tree to be drawn.
+#[derive(Clone, Debug)]
+struct Question {
+    version: u64,
+    root: NodeRef,
+    asked: Instant,
+}
+
+/// Makes solids of trees.
+#[derive(Debug)]
+pub struct SolidMaker {
+    worker: Newest<Question, Solid>,
+    asked: u64,
+}
+
+impl SolidMaker {
+    /// Starts the thread; `wake` is called when a solid is ready.
+    ///
+    /// Errors: a system without a thread to spare.
+    pub fn start(wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
+        let mut levels = CELLS.map(|cells| Level { cells, surface: None });
+        let mut extent = Aabb::EMPTY;
+        let worker = Newest::start("solid", wake, move |question: Question, answering| {
+            make(&mut levels, &mut extent, &question, answering);
+        })?;
+        Ok(Self { worker, asked: 0 })
+    }
+
+    /// Asks for the solid of a tree; returns its version.
+    pub fn ask(&mut self, root: &NodeRef) -> u64 {
+        self.asked += 1;
+        self.worker.ask(Question { version: self.asked, root: root.clone(), asked: Instant::now() });
+        self.asked
+    }
+
+    /// The newest solid since the last look.
+    pub fn ready(&mut self) -> Option<Solid> {
+        self.worker.answers().last()
+    }
+
+    /// Whether everything asked for so far is there in `shown` as fine as it gets.
+    pub fn is_done(&self, shown: Option<&Solid>) -> bool {
+        shown.is_some_and(|solid| solid.version == self.asked && solid.is_fine)
+    }
+}
+
+/// A surface kept from one question to the next.
+struct Level {
+    cells: f32,
+    surface: Option<(NodeRef, Surface)>,
+}
+
+/// Makes one level after the other. `extent` is around the last solid, by which cells are chosen.
+fn make(levels: &mut [Level; 2], extent: &mut Aabb, question: &Question, answering: &Answering<Solid>) {
+    let tree = Tree::new(&question.root);
+    let palette = Palette::new(&question.root, &BakeStore::new());
+    if extent.is_empty() {
+        *extent = tree.support();
+    }
+    for (i, level) in levels.iter_mut().enumerate() {
+        if i > 0 && !rests(&answering.cancel) {
+            return;
+        }
+        let Some(surface) = level.follow(&question.root, &tree, *extent, &answering.cancel) else { return };
+        let made = Solid { unconstrained: tree.unconstrained(), ..draw(surface, &palette, question, i == 1) };
+        *extent = made.bounds;
+        answering.give(made);
+    }
+}
+
+/// Waits a little; whether nothing new was asked.
+fn rests(cancel: &Cancel) -> bool {
+    let until = Instant::now() + REST;
+    while Instant::now() < until && !cancel.is_cancelled() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    !cancel.is_cancelled()
+}
+
+impl Level {
+    /// The surface of the tree, in cells of about the right size for a solid this large: what was there, changed where
+    /// the trees differ, or a new one. `None` if it was cancelled.
+    fn follow(&mut self, root: &NodeRef, tree: &Tree, solid: Aabb, cancel: &Cancel) -> Option<&Surface> {
+        let options = Options { cancel: Some(cancel), ..Options::default() };
+        let longest = if solid.is_empty() { 1.0 } else { solid.size().max_element() };
+        let wanted = CellSize::from_mm((longest / self.cells).max(1e-3)).ok()?;
+        let kept = self.surface.take().filter(|(_, surface)| {
+            let ratio = surface.cell().mm() / wanted.mm();
+            (1.0 / SLACK..=SLACK).contains(&ratio)
+        });
+        let surface = match kept {
+            Some((before, mut surface)) => {
+                let dirty = changed_region(&before, root);
+                match surface.update(tree, dirty, &options) {
+                    Ok(_) => surface,
+                    Err(_) => {
+                        // An update that was stopped changes nothing, so the next one starts from here again.
+                        self.surface = Some((before, surface));
+                        return None;
+                    }
+                }
+            }
+            None => Surface::build(tree, wanted, &options).ok()?,
+        };
+        self.surface = Some((root.clone(), surface));
+        self.surface.as_ref().map(|(_, surface)| surface)
+    }
+}
+
+fn draw(surface: &Surface, palette: &Palette, question: &Question, is_fine: bool) -> Solid {
+    let (mesh, normals, kinds) = (surface.mesh(), surface.normals(), surface.kinds());
+    let colors: Vec<[u8; 3]> = mesh
+        .positions
+        .par_chunks(TOGETHER)
+        .map_init(|| palette.painter(), |painter, points| painter.colors(points))
+        .flatten_iter()
+        .collect();
+    let level = u8::from(is_fine);
+    let corners = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+        let flat = (b - a).cross(c - a).normalize_or_zero();
+        triangle.map(|v| {
+            let v = v as usize;
+            let normal =
+                if kinds[v] == VertexKind::Smooth && normals[v] != Vec3::ZERO { normals[v] } else { flat };
+            let [r, g, b] = colors[v];
+            Corner {
+                position: mesh.positions[v].to_array(),
+                normal: normal.to_array(),
+                color: [r, g, b, level],
+            }
+        })
+    };
+    Solid {
+        version: question.version,
+        corners: mesh.triangles.par_iter().flat_map_iter(corners).collect(),
+        bounds: Aabb::of_points(mesh.positions.iter().copied()),
+        cell: surface.cell().mm(),
+        is_fine,
+        unconstrained: 0,
+        took: question.asked.elapsed(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use blobtree::build::{point, union};
+
+    /// Waits for the fine solid of this version.
+    fn fine(maker: &mut SolidMaker, version: u64) -> Solid {
+        let until = Instant::now() + Duration::from_secs(60);
+        loop {
+            match maker.ready() {
+                Some(solid) if solid.version == version && solid.is_fine => return solid,
+                _ => assert!(Instant::now() < until, "it never came"),
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    #[test]
+    fn a_solid_that_follows_a_drag_is_the_one_that_is_made_anew() {
+        let two = |x: f32| -> NodeRef { union([point([0., 0., 10.], 10.), point([x, 0., 10.], 8.)]).into() };
+        let mut following = SolidMaker::start(Arc::new(|| ())).expect("a thread");
+        let first = following.ask(&two(12.0));
+        fine(&mut following, first);
+        let after = two(13.0);
+        let version = following.ask(&after);
+        let followed = fine(&mut following, version);
+        let mut anew = SolidMaker::start(Arc::new(|| ())).expect("a thread");
+        let version = anew.ask(&after);
+        let made = fine(&mut anew, version);
+        // The cells were chosen for the solid before the drag.
+        let ends = |solid: &Solid| [solid.bounds.min, solid.bounds.max];
+        for (a, b) in ends(&followed).into_iter().zip(ends(&made)) {
+            assert!(a.distance(b) < 0.05, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_drawn_of_an_empty_page() {
+        let mut maker = SolidMaker::start(Arc::new(|| ())).expect("a thread");
+        let version = maker.ask(&crate::workbench::Workbench::empty_page().root);
+        let solid = fine(&mut maker, version);
+        assert!(solid.corners.is_empty() && solid.bounds.is_empty());
+    }
+}

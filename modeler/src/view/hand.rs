@@ -1,0 +1,216 @@
+//! What the hand does in the view: drawing, selecting, turning, moving.
+
+use super::handles::Handle;
+use super::in_view;
+use crate::modeler::Modeler;
+use crate::pad::Around;
+use crate::settings::Tool;
+use blobtree::{NodePath, Tree, pick};
+use egui::{Event, PointerButton, Response, Ui};
+use glam::Vec2;
+use sketch::stroke::PenSample;
+
+/// A press that moves less than this is a tap, points.
+const TAP: f32 = 4.0;
+
+/// A second tap within this distance of the first means the next node there, points.
+const SAME_PLACE: f32 = 8.0;
+
+/// How much a notch of the wheel enlarges, as a power of the scrolled points.
+const WHEEL: f32 = 0.0025;
+
+/// What the hand holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Hold {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The pen on the paper.
+    Pen,
+    /// The model.
+    View(Tool),
+    /// A handle of the selected node, taken at a place of the view.
+    Handle(Handle, Vec2),
+}
+
+/// Does what the hand does.
+pub fn heed(modeler: &mut Modeler, ui: &Ui, response: &Response) {
+    fingers(modeler, ui, response);
+    wheel(modeler, ui, response);
+    press(modeler, ui, response);
+    match modeler.view.hold {
+        Hold::Nothing => {}
+        Hold::Pen => pen(modeler, ui, response),
+        Hold::View(tool) => drag(modeler, tool, ui.input(|input| input.pointer.delta())),
+        Hold::Handle(handle, from) => handle_dragged(modeler, ui, response, handle, from),
+    }
+    if !ui.input(|input| input.pointer.any_down()) {
+        modeler.view.hold = Hold::Nothing;
+    }
+}
+
+/// Two fingers move and size the view, and turn nothing into a stroke.
+fn fingers(modeler: &mut Modeler, ui: &Ui, response: &Response) {
+    let Some(touch) = ui.input(|input| input.multi_touch()) else { return };
+    if !response.rect.contains(touch.center_pos) {
+        return;
+    }
+    modeler.pad.drop_current();
+    modeler.view.hold = Hold::Nothing;
+    let screen = modeler.view.screen;
+    let by = Vec2::new(touch.translation_delta.x, touch.translation_delta.y);
+    if touch.num_touches >= 3 {
+        modeler.camera.orbit(by, screen);
+    } else {
+        modeler.camera.pan(by, screen);
+    }
+    modeler.camera.zoom(touch.zoom_delta, in_view(touch.center_pos, response), screen);
+}
+
+fn wheel(modeler: &mut Modeler, ui: &Ui, response: &Response) {
+    let Some(at) = response.hover_pos() else { return };
+    let (scrolled, pinched, shift) =
+        ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta(), input.modifiers.shift));
+    let screen = modeler.view.screen;
+    if shift {
+        modeler.camera.pan(Vec2::new(scrolled.x, scrolled.y), screen);
+    } else if scrolled.y != 0.0 || pinched != 1.0 {
+        modeler.camera.zoom(pinched * (WHEEL * scrolled.y).exp(), in_view(at, response), screen);
+    }
+}
+
+/// The hand takes hold of something.
+fn press(modeler: &mut Modeler, ui: &Ui, response: &Response) {
+    let pressed = |button| ui.input(|input| input.pointer.button_pressed(button));
+    let Some(at) = ui.input(|input| input.pointer.press_origin()).filter(|_| response.contains_pointer())
+    else {
+        return;
+    };
+    let (shift, space) = ui.input(|input| (input.modifiers.shift, input.key_down(egui::Key::Space)));
+    for button in [PointerButton::Secondary, PointerButton::Middle] {
+        if let Some(tool) = modeler.settings.habit.drag(button, shift).filter(|_| pressed(button)) {
+            modeler.pad.drop_current();
+            modeler.view.hold = Hold::View(tool);
+        }
+    }
+    if !pressed(PointerButton::Primary) {
+        return;
+    }
+    let at = in_view(at, response);
+    modeler.view.hold = match modeler.settings.tool {
+        _ if space => Hold::View(Tool::Turn),
+        tool @ (Tool::Turn | Tool::Pan) => Hold::View(tool),
+        tool => match Handle::at(modeler, at).filter(|_| tool == Tool::Draw) {
+            Some(handle) => Hold::Handle(handle, at),
+            None => {
+                modeler.pad.begin(sample(at, ui), tool == Tool::Erase);
+                Hold::Pen
+            }
+        },
+    };
+}
+
+fn drag(modeler: &mut Modeler, tool: Tool, by: egui::Vec2) {
+    let (by, screen) = (Vec2::new(by.x, by.y), modeler.view.screen);
+    match tool {
+        Tool::Pan => modeler.camera.pan(by, screen),
+        _ => modeler.camera.orbit(by, screen),
+    }
+}
+
+/// The pen is on the paper, or has just been lifted.
+fn pen(modeler: &mut Modeler, ui: &Ui, response: &Response) {
+    let events = ui.input(|input| input.events.clone());
+    for event in &events {
+        match event {
+            Event::PointerMoved(to) => modeler.pad.go_on(sample(in_view(*to, response), ui)),
+            Event::PointerButton { button: PointerButton::Primary, pressed: false, pos, .. } => {
+                let at = in_view(*pos, response);
+                modeler.pad.go_on(sample(at, ui));
+                lift(modeler);
+            }
+            // The pen has left the world.
+            Event::PointerGone | Event::WindowFocused(false) => lift(modeler),
+            _ => {}
+        }
+    }
+}
+
+fn lift(modeler: &mut Modeler) {
+    let Some(stroke) = modeler.pad.current() else { return };
+    modeler.view.hold = Hold::Nothing;
+    let start = stroke.samples[0].place();
+    let is_tap = stroke.places().all(|place| place.distance(start) < TAP);
+    if is_tap && !stroke.eraser {
+        modeler.pad.drop_current();
+        tap(modeler, start);
+        return;
+    }
+    let view = modeler.camera.view(modeler.view.screen);
+    let outline = selected_outline(modeler);
+    let around =
+        Around { selected: outline.as_ref().map(|corners| &corners[..]), buttons: &modeler.view.buttons };
+    let stroked = modeler.pad.end(&view, &around);
+    modeler.stroked(stroked);
+}
+
+/// Selects what is below the pen; at the same place again, the next of those that made the surface there.
+fn tap(modeler: &mut Modeler, at: Vec2) {
+    let ray = modeler.camera.view(modeler.view.screen).ray(at);
+    let root = modeler.bench.scene().root.clone();
+    let Some(found) = pick(&root, &Tree::new(&root), ray.origin, ray.direction) else {
+        modeler.view.tapped = None;
+        modeler.select(None);
+        return;
+    };
+    let again = modeler.view.tapped.filter(|(before, _)| before.distance(at) < SAME_PLACE);
+    let turn = again.map_or(0, |(_, turn)| turn + 1) % found.contributors.len().max(1);
+    modeler.view.tapped = Some((at, turn));
+    modeler.select(found.contributors.get(turn).map(|(path, _)| outermost_warp(&root, path)));
+}
+
+/// The node, or the outermost of the warps that bend only it: what a person means who points at it.
+fn outermost_warp(root: &blobtree::NodeRef, path: &NodePath) -> NodePath {
+    let mut path = path.clone();
+    while let Some(parent) = path.parent() {
+        let is_warp = parent.find(root).is_some_and(|node| matches!(node.shape, blobtree::Shape::Warp(..)));
+        if !is_warp || parent.0.is_empty() {
+            break;
+        }
+        path = parent;
+    }
+    path
+}
+
+/// The corners on the screen of the box around the selected node, around which nothing else of it is.
+fn selected_outline(modeler: &Modeler) -> Option<[Vec2; 4]> {
+    let bounds = modeler.selected_box()?;
+    let view = modeler.camera.view(modeler.view.screen);
+    let corners: Option<Vec<Vec2>> =
+        bounds.corners().iter().map(|corner| view.screen_from_model(*corner)).collect();
+    let corners = corners?;
+    let lo = corners.iter().fold(Vec2::INFINITY, |lo, p| lo.min(*p));
+    let hi = corners.iter().fold(Vec2::NEG_INFINITY, |hi, p| hi.max(*p));
+    Some([lo, Vec2::new(hi.x, lo.y), hi, Vec2::new(lo.x, hi.y)])
+}
+
+fn handle_dragged(modeler: &mut Modeler, ui: &Ui, response: &Response, handle: Handle, from: Vec2) {
+    let Some(at) = ui.input(|input| input.pointer.latest_pos()) else { return };
+    let let_go = ui.input(|input| input.pointer.primary_released());
+    let at = in_view(at, response);
+    if let Some(motion) = handle.motion(modeler, from, at).filter(|_| from.distance(at) > 0.0) {
+        modeler.place(motion, let_go);
+    }
+}
+
+/// What the pen says now, with the time of this frame and the pressure of the finger or pen.
+fn sample(at: Vec2, ui: &Ui) -> PenSample {
+    let (time, pressure) = ui.input(|input| {
+        let forces = input.events.iter().rev().filter_map(|event| match event {
+            Event::Touch { force, .. } => *force,
+            _ => None,
+        });
+        (input.time, forces.take(1).next())
+    });
+    PenSample { time: Some(time as f32), pressure: pressure.unwrap_or(1.0), ..PenSample::at(at) }
+}

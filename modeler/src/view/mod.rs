@@ -1,0 +1,79 @@
+//! The model view: the picture, what lies over it, and the hand in it.
+
+mod hand;
+mod handles;
+mod overlay;
+
+use crate::ground;
+use crate::modeler::Modeler;
+use crate::stage::{Picture, Stage};
+use egui::{CentralPanel, Color32, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use glam::Vec2;
+use sketch::gesture::Button;
+
+/// What the view remembers from frame to frame.
+#[derive(Debug, Default)]
+pub struct ViewState {
+    /// Its size, points.
+    pub screen: Vec2,
+    /// Whether the next solid is to be shown whole.
+    pub shows_new: bool,
+    /// Whether the user wants to quit, and nothing is lost by it.
+    pub quits: bool,
+    /// The suggestions' buttons of the last frame, in points of the view.
+    pub(super) buttons: Vec<Button>,
+    /// What the hand holds.
+    pub(super) hold: hand::Hold,
+    /// The last tap: where, and which of the nodes there it selected.
+    pub(super) tapped: Option<(Vec2, usize)>,
+}
+
+/// Shows the model and lets the hand at it.
+pub fn show(modeler: &mut Modeler, ui: &mut Ui, stage: &mut dyn Stage) {
+    CentralPanel::no_frame().show(ui, |ui| {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Model view"));
+        modeler.view.screen = Vec2::new(rect.width().max(1.0), rect.height().max(1.0));
+        hand::heed(modeler, ui, &response);
+        picture(modeler, ui, rect, stage);
+        overlay::show(modeler, ui, &response);
+    });
+}
+
+/// A place of the view on the screen.
+fn on_screen(place: Vec2, response: &Response) -> Pos2 {
+    response.rect.min + egui::vec2(place.x, place.y)
+}
+
+/// A place of the screen in the view.
+fn in_view(place: Pos2, response: &Response) -> Vec2 {
+    let from = place - response.rect.min;
+    Vec2::new(from.x, from.y)
+}
+
+fn picture(modeler: &Modeler, ui: &Ui, rect: Rect, stage: &mut dyn Stage) {
+    let dark = ui.visuals().dark_mode;
+    let background = if dark { [34, 36, 40] } else { [236, 238, 241] };
+    let scale = ui.ctx().pixels_per_point();
+    let lines = ground::lines(&modeler.settings, dark);
+    let picture = Picture {
+        view: modeler.camera.view(modeler.view.screen),
+        pixels: [rect.width(), rect.height()].map(|points| ((points * scale).round() as u32).clamp(1, 8192)),
+        background,
+        solid: modeler.solid(),
+        look: modeler.settings.look,
+        overhang: modeler.settings.shows_overhang.then_some(modeler.settings.overhang),
+        lines: &lines,
+    };
+    match stage.show(&picture) {
+        Some(texture) => {
+            let whole = Rect::from_min_max(Pos2::ZERO, egui::pos2(1.0, 1.0));
+            ui.painter().image(texture, rect, whole, Color32::WHITE);
+        }
+        None => {
+            let [r, g, b] = background;
+            ui.painter().rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
+        }
+    }
+}

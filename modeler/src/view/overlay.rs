@@ -1,0 +1,216 @@
+//! What lies over the picture: strokes, curves, the selection with its handles, and what a sketch might become.
+
+use super::hand::Hold;
+use super::handles::{ALL, Handle, Handles};
+use super::{in_view, on_screen};
+use crate::camera::Side;
+use crate::modeler::Modeler;
+use blobtree::Aabb;
+use egui::{Area, Button, Color32, Id, Order, Painter, Pos2, Response, RichText, Stroke, Ui, vec2};
+use glam::Vec2;
+use sketch::suggest::{Suggestion, View};
+
+/// Strokes as they are drawn.
+const STROKE: Color32 = Color32::from_rgba_premultiplied(30, 60, 130, 130);
+
+/// What the eraser has passed over.
+const ERASED: Color32 = Color32::from_rgba_premultiplied(120, 40, 40, 120);
+
+/// The size of a suggestion's button, points: large enough to be struck through.
+const BUTTON: egui::Vec2 = vec2(132.0, 34.0);
+
+/// Between a sketch and its suggestions, points.
+const GAP: f32 = 18.0;
+
+/// Shows it.
+pub fn show(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
+    let painter = ui.painter_at(response.rect);
+    let view = modeler.camera.view(modeler.view.screen);
+    let selected = modeler.selected_box().map(|bounds| (bounds, Color32::from_rgb(240, 170, 40)));
+    let hovered = modeler.hovered_box().map(|bounds| (bounds, Color32::from_rgb(90, 150, 230)));
+    for (bounds, color) in [selected, hovered].into_iter().flatten() {
+        paint_box(&painter, &bounds, &view, response, color);
+    }
+    paint_handles(modeler, &painter, response);
+    paint_sketch(modeler, &painter, &view, response);
+    suggestions(modeler, ui, &view, response);
+    view_buttons(modeler, ui, response);
+}
+
+fn paint_box(painter: &Painter, bounds: &Aabb, view: &View, response: &Response, color: Color32) {
+    let corners = bounds.corners().map(|corner| view.screen_from_model(corner));
+    for a in 0..8_usize {
+        // Corners are neighbours if they differ along one axis.
+        for b in [a ^ 1, a ^ 2, a ^ 4].into_iter().filter(|b| *b > a) {
+            if let (Some(a), Some(b)) = (corners[a], corners[b]) {
+                painter.line_segment(
+                    [on_screen(a, response), on_screen(b, response)],
+                    Stroke::new(1.0, color.gamma_multiply(0.7)),
+                );
+            }
+        }
+    }
+}
+
+fn paint_handles(modeler: &Modeler, painter: &Painter, response: &Response) {
+    let Some(handles) = Handles::of(modeler) else { return };
+    let held = match modeler.view.hold {
+        Hold::Handle(handle, _) => Some(handle),
+        Hold::Nothing => response.hover_pos().and_then(|at| Handle::at(modeler, in_view(at, response))),
+        _ => None,
+    };
+    for handle in ALL.into_iter().rev() {
+        let width = if held == Some(handle) { 4.0 } else { 2.0 };
+        let stroke = Stroke::new(width, handle.color());
+        let line: Vec<Pos2> = handles.line(handle).into_iter().map(|p| on_screen(p, response)).collect();
+        match (handle, &line[..]) {
+            (Handle::Arrow(_), [from, to]) => painter.arrow(*from, *to - *from, stroke),
+            (Handle::Square, [at]) => {
+                let square = egui::Rect::from_center_size(*at, vec2(14.0, 14.0));
+                painter.rect_filled(square, 2.0, handle.color());
+            }
+            (Handle::Middle, [at]) => {
+                painter.circle_filled(*at, if held == Some(handle) { 9.0 } else { 7.0 }, handle.color());
+            }
+            (_, many) => {
+                painter.line(many.to_vec(), Stroke::new(width, handle.color().gamma_multiply(0.8)));
+            }
+        }
+    }
+}
+
+fn paint_sketch(modeler: &Modeler, painter: &Painter, view: &View, response: &Response) {
+    let pad = &modeler.pad;
+    let shown = |line: &mut dyn Iterator<Item = Vec2>| -> Vec<Pos2> {
+        line.filter_map(|p| pad.shown(p, view)).map(|p| on_screen(p, response)).collect()
+    };
+    for stroke in &pad.sketch().strokes {
+        let line = shown(&mut stroke.samples.iter().map(|sample| sample.pen.place()));
+        paint_line(painter, line, Stroke::new(5.0, STROKE));
+    }
+    if let Some(curves) = &pad.curves {
+        let ink =
+            if painter.ctx().global_style().visuals.dark_mode { Color32::WHITE } else { Color32::BLACK };
+        for closed in &curves.closed {
+            paint_line(
+                painter,
+                shown(&mut closed.iter().chain(closed.first()).copied()),
+                Stroke::new(1.6, ink),
+            );
+        }
+        for open in &curves.open {
+            paint_line(painter, shown(&mut open.iter().copied()), Stroke::new(1.6, ink));
+        }
+    }
+    if let Some(current) = pad.current() {
+        let line = current.places().map(|p| on_screen(p, response)).collect();
+        let color = if current.eraser { ERASED } else { STROKE };
+        paint_line(painter, line, Stroke::new(5.0, color));
+    }
+}
+
+fn paint_line(painter: &Painter, line: Vec<Pos2>, stroke: Stroke) {
+    match line[..] {
+        [] => {}
+        [only] => {
+            painter.circle_filled(only, 0.5 * stroke.width, stroke.color);
+        }
+        _ => {
+            painter.line(line, stroke);
+        }
+    }
+}
+
+/// The list beside the sketch, never under the pen: on the side with more room.
+fn suggestions(modeler: &mut Modeler, ui: &mut Ui, view: &View, response: &Response) {
+    modeler.view.buttons.clear();
+    let Some(expectations) = modeler.pad.expectations.clone().filter(|_| modeler.pad.current().is_none())
+    else {
+        return;
+    };
+    let places: Vec<Vec2> =
+        modeler.pad.sketch().places().filter_map(|p| modeler.pad.shown(p, view)).collect();
+    let lo = places.iter().fold(Vec2::INFINITY, |lo, p| lo.min(*p));
+    let hi = places.iter().fold(Vec2::NEG_INFINITY, |hi, p| hi.max(*p));
+    if places.is_empty() {
+        return;
+    }
+    let rows = expectations.suggestions.len().max(1) as f32;
+    let size = Vec2::new(BUTTON.x + 8.0, rows * (BUTTON.y + 4.0) + 8.0);
+    let screen = modeler.view.screen;
+    let right = screen.x - hi.x >= size.x + GAP || screen.x - hi.x >= lo.x;
+    let x = if right { hi.x + GAP } else { lo.x - GAP - size.x };
+    let at = Vec2::new(x, lo.y).clamp(Vec2::splat(4.0), (screen - size - 4.0).max(Vec2::splat(4.0)));
+    let mut chosen = None;
+    let area = Area::new(Id::unique("suggestions")).order(Order::Middle).fixed_pos(on_screen(at, response));
+    area.show(ui.ctx(), |ui| {
+        ui.spacing_mut().item_spacing.y = 4.0;
+        if let (true, Some(reason)) = (expectations.suggestions.is_empty(), &expectations.no_outline) {
+            ui.label(RichText::new(reason.to_string()).background_color(ui.visuals().window_fill));
+        }
+        for (i, suggestion) in expectations.suggestions.iter().enumerate() {
+            let button = suggestion_button(ui, suggestion);
+            let rect = button.rect.translate(-response.rect.min.to_vec2());
+            modeler.view.buttons.push(sketch::gesture::Button {
+                min: Vec2::new(rect.min.x, rect.min.y),
+                max: Vec2::new(rect.max.x, rect.max.y),
+            });
+            if button.clicked() {
+                chosen = Some(i);
+            }
+        }
+    });
+    if let Some(chosen) = chosen {
+        modeler.choose(chosen);
+    }
+}
+
+fn suggestion_button(ui: &mut Ui, suggestion: &Suggestion) -> Response {
+    let [r, g, b] = suggestion.color.0;
+    let fill = Color32::from_rgb(r, g, b);
+    // Dark letters on the light green, light ones on blue and red.
+    let ink =
+        if u32::from(r) + 2 * u32::from(g) + u32::from(b) > 500 { Color32::BLACK } else { Color32::WHITE };
+    let text = RichText::new(suggestion.name).color(ink).size(15.0);
+    ui.add(Button::new(text).fill(fill).min_size(BUTTON)).on_hover_text(suggestion.sentence)
+}
+
+/// The named views, in the corner.
+fn view_buttons(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
+    let corner = response.rect.right_top() + vec2(-8.0, 8.0);
+    let area =
+        Area::new(Id::unique("views")).order(Order::Middle).pivot(egui::Align2::RIGHT_TOP).fixed_pos(corner);
+    area.show(ui.ctx(), |ui| {
+        egui::Frame::popup(ui.style()).inner_margin(4.0).show(ui, |ui| {
+            egui::Grid::new("sides").spacing([3.0, 3.0]).show(ui, |ui| {
+                let rows: [&[Side]; 3] = [
+                    &[Side::Left, Side::Top, Side::Right],
+                    &[Side::Front, Side::Corner, Side::Back],
+                    &[Side::Bottom],
+                ];
+                for row in rows {
+                    for &side in row {
+                        if ui.add(Button::new(side.name()).min_size(vec2(54.0, 22.0))).clicked() {
+                            modeler.look_from(side);
+                        }
+                    }
+                    if row.len() == 1 {
+                        if ui.button("See all").on_hover_text("See everything (F)").clicked() {
+                            let bounds = modeler.bounds();
+                            modeler.camera.show(bounds);
+                        }
+                        let mut flat = !modeler.camera.perspective;
+                        if ui
+                            .checkbox(&mut flat, "Flat")
+                            .on_hover_text("Far things as large as near ones")
+                            .changed()
+                        {
+                            modeler.camera.perspective = !flat;
+                        }
+                    }
+                    ui.end_row();
+                }
+            });
+        });
+    });
+}

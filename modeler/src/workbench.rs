@@ -1,0 +1,200 @@
+//! The document on the table: its file, its journal, what is selected, and the one way to change it.
+
+use crate::journal::{Journal, JournalError, Recovered};
+use blobtree::build::union;
+use blobtree::{
+    Change, Command, CommandError, Document, JournalEntry, Node, NodePath, NodeRef, SaveError, Scene,
+    SceneError, Shape,
+};
+use std::path::{Path, PathBuf};
+
+/// A document being worked on.
+#[derive(Debug)]
+pub struct Workbench {
+    document: Document,
+    /// Where everything done is written first; none if that is not possible or not wanted.
+    journal: Option<Journal>,
+    /// The user's file, if there is one.
+    file: Option<PathBuf>,
+    /// The scene as it was opened or saved.
+    saved: Scene,
+    /// The selected node; always one that is there.
+    selected: Option<NodePath>,
+    /// What is shown instead of the document while something is dragged.
+    preview: Option<Scene>,
+}
+
+/// What became of something that was to be done.
+#[derive(Debug, thiserror::Error)]
+pub enum EditError {
+    /// It cannot be carried out; nothing has changed.
+    #[error("{0}")]
+    Command(#[from] CommandError),
+    /// It was carried out, but cannot be kept: from now on a crash would lose what is not saved.
+    #[error("what you do can no longer be protected against a crash ({0}); save your work")]
+    Journal(Box<JournalError>),
+}
+
+impl From<JournalError> for EditError {
+    fn from(error: JournalError) -> Self {
+        Self::Journal(Box::new(error))
+    }
+}
+
+impl Workbench {
+    /// A table with a scene on it. `sessions` is the folder for its journal; without one it has none.
+    ///
+    /// The second value says why there is no journal although one was wanted. Errors: an illegal scene.
+    pub fn new(
+        scene: Scene,
+        file: Option<PathBuf>,
+        sessions: Option<&Path>,
+    ) -> Result<(Self, Option<JournalError>), SceneError> {
+        let document = Document::new(scene.clone())?;
+        let journal = sessions.map(|sessions| Journal::begin(sessions, &scene, file.as_deref())).transpose();
+        let (journal, error) = match journal {
+            Ok(journal) => (journal, None),
+            Err(error) => (None, Some(error)),
+        };
+        Ok((Self { document, journal, file, saved: scene, selected: None, preview: None }, error))
+    }
+
+    /// A table with what was brought back from a session that was left behind; not saved.
+    pub fn recovered(recovered: Recovered, file: Option<PathBuf>) -> Self {
+        let Recovered { document, journal, .. } = recovered;
+        let saved = Scene::new(empty());
+        Self { document, journal: Some(journal), file, saved, selected: None, preview: None }
+    }
+
+    /// The scene of an empty page: a union of nothing.
+    pub fn empty_page() -> Scene {
+        Scene::new(empty())
+    }
+
+    /// The document.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The scene as it is.
+    pub fn scene(&self) -> &Scene {
+        self.document.scene()
+    }
+
+    /// The scene as it is to be shown: with what is being dragged.
+    pub fn shown(&self) -> &Scene {
+        self.preview.as_ref().unwrap_or(self.document.scene())
+    }
+
+    /// The user's file, if there is one.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    /// Whether anything is different from what is in the user's file.
+    pub fn is_unsaved(&self) -> bool {
+        let now = self.scene();
+        !NodeRef::ptr_eq(&now.root, &self.saved.root) && now.root != self.saved.root
+            || now.title != self.saved.title
+    }
+
+    /// Whether everything done is on disk.
+    pub fn is_protected(&self) -> bool {
+        self.journal.is_some()
+    }
+
+    /// What is selected.
+    pub fn selected(&self) -> Option<&NodePath> {
+        self.selected.as_ref()
+    }
+
+    /// The selected node.
+    pub fn selected_node(&self) -> Option<&NodeRef> {
+        self.selected.as_ref()?.find(&self.scene().root)
+    }
+
+    /// Selects a node; one that is not there, and `None` select nothing.
+    pub fn select(&mut self, path: Option<NodePath>) {
+        let is_there = |path: &NodePath| path.find(&self.scene().root).is_some();
+        self.selected = path.filter(is_there);
+    }
+
+    /// Does something: writes it to the journal, then carries it out. What is being dragged is let go.
+    pub fn act(&mut self, entry: JournalEntry) -> Result<Option<Change>, EditError> {
+        self.preview = None;
+        if let JournalEntry::Command(command) = &entry {
+            // What cannot be carried out must not be in the journal.
+            self.document.preview(command.clone())?;
+        }
+        let written =
+            self.journal.as_mut().map_or(Ok(()), |journal| journal.add(&entry, self.document.scene()));
+        let change = self.document.repeat(entry)?;
+        let selected = self.selected.take();
+        self.select(selected);
+        if let Err(error) = written {
+            self.journal = None;
+            return Err(error.into());
+        }
+        Ok(change)
+    }
+
+    /// Carries out a command; see [`Self::act`].
+    pub fn apply(&mut self, command: Command) -> Result<Option<Change>, EditError> {
+        self.act(JournalEntry::Command(command))
+    }
+
+    /// Shows what a command would do, without doing it; `None` shows the document again.
+    ///
+    /// Errors: a command that cannot be carried out; then the document is shown.
+    pub fn drag(&mut self, command: Option<Command>) -> Result<(), CommandError> {
+        self.preview = None;
+        self.preview = command.map(|command| self.document.preview(command)).transpose()?;
+        Ok(())
+    }
+
+    /// Saves the scene to a file, which is the user's from now on.
+    ///
+    /// Errors: as [`Document::save`]; then nothing has changed.
+    pub fn save(&mut self, file: PathBuf) -> Result<(), SaveError> {
+        self.document.save(&file)?;
+        self.saved = self.scene().clone();
+        self.file = Some(file);
+        Ok(())
+    }
+
+    /// Takes the document off the table: it is saved, or not wanted.
+    pub fn close(self) {
+        if let Some(journal) = self.journal {
+            journal.end();
+        }
+    }
+
+    /// What takes the selected node away, with all below it and the warps that bend only it. None if that is all
+    /// there is.
+    pub fn remove_selected(&self) -> Option<Command> {
+        let mut path = self.selected.clone()?;
+        loop {
+            let parent = path.parent()?;
+            if matches!(parent.find(&self.scene().root)?.shape, Shape::Operator(..)) {
+                return Some(Command::Remove { path });
+            }
+            path = parent;
+        }
+    }
+
+    /// What puts a copy of the selected node beside it.
+    pub fn duplicate_selected(&self) -> Option<Command> {
+        let path = self.selected.as_ref()?;
+        let (parent, index) = (path.parent()?, *path.0.last()?);
+        let node = self.selected_node()?.clone();
+        matches!(parent.find(&self.scene().root)?.shape, Shape::Operator(..)).then_some(Command::Insert {
+            parent,
+            index: index + 1,
+            node,
+        })
+    }
+}
+
+fn empty() -> Node {
+    union(Vec::<Node>::new())
+}

@@ -1,0 +1,119 @@
+//! A modeler driven as a person would: by what is on the screen.
+
+use blobtree::{Drawing, MeshReference, Scene, SceneSources, Template};
+use egui::{Pos2, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use mesh::MeshDistance;
+use modeler::Modeler;
+use modeler::desk::{Desk, Opened, Purpose};
+use modeler::stage::NoStage;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Files without a disk, but for scenes; drawings are solved as the program does.
+#[derive(Debug, Default)]
+pub struct TestDesk;
+
+struct Solver;
+
+impl SceneSources for Solver {
+    fn mesh(&mut self, _: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+        Err("no meshes here".into())
+    }
+
+    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String> {
+        sketch::solve(drawing, falloff).map_err(|reason| reason.to_string())
+    }
+}
+
+impl Desk for TestDesk {
+    fn open(&mut self, path: &Path) -> Result<Opened, String> {
+        let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let scene = Scene::from_bytes(&bytes, &mut Solver).map_err(|e| e.to_string())?;
+        Ok(Opened::Scene(scene, Vec::new()))
+    }
+
+    fn sources<'a>(&'a mut self, _: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
+        Box::new(Solver)
+    }
+
+    fn export(&mut self, _: &Scene, path: &Path, _: Option<f32>) -> Result<String, String> {
+        Ok(format!("Exported {}.", path.display()))
+    }
+
+    fn browse(&mut self, _: Purpose, _: Arc<dyn Fn() + Send + Sync>) -> bool {
+        false
+    }
+
+    fn browsed(&mut self) -> Option<Option<PathBuf>> {
+        None
+    }
+
+    fn examples(&self) -> &[(&'static str, &'static str)] {
+        const SNOWMAN: &str = include_str!("../../../examples/snowman.trullo");
+        &[("Snowman", SNOWMAN)]
+    }
+}
+
+/// A modeler on a screen without pixels.
+pub type Screen = Harness<'static, Modeler>;
+
+/// One with an empty page.
+pub fn screen(sessions: Option<PathBuf>) -> Screen {
+    let modeler = Modeler::new(Box::new(TestDesk), sessions, Arc::new(|| ())).expect("threads");
+    let builder = Harness::builder().with_size([1280.0, 800.0]);
+    let mut screen =
+        builder.build_ui_state(|ui, modeler: &mut Modeler| modeler.ui(ui, &mut NoStage), modeler);
+    settle(&mut screen);
+    screen
+}
+
+/// Lets frames pass until the background threads have nothing more to show.
+pub fn settle(screen: &mut Screen) {
+    let until = Instant::now() + Duration::from_secs(120);
+    screen.run_steps(3);
+    while !screen.state().is_at_rest() {
+        assert!(Instant::now() < until, "it never comes to rest");
+        std::thread::sleep(Duration::from_millis(5));
+        screen.step();
+    }
+    screen.run_steps(2);
+}
+
+/// The middle of the model view.
+pub fn middle(screen: &Screen) -> Pos2 {
+    screen.get_by_label("Model view").rect().center()
+}
+
+/// Draws a line with the pen.
+pub fn draw(screen: &mut Screen, line: impl IntoIterator<Item = Pos2>) {
+    let mut line = line.into_iter();
+    let first = line.next().expect("a place to begin at");
+    screen.hover_at(first);
+    screen.drag_at(first);
+    screen.step();
+    let mut last = first;
+    for place in line {
+        screen.hover_at(place);
+        last = place;
+    }
+    screen.drop_at(last);
+    screen.step();
+    settle(screen);
+}
+
+/// A closed circle.
+pub fn circle(middle: Pos2, radius: f32) -> impl Iterator<Item = Pos2> {
+    (0..=64).map(move |i| {
+        let angle = std::f32::consts::TAU * i as f32 / 64.0;
+        pos2(middle.x + radius * angle.cos(), middle.y + radius * angle.sin())
+    })
+}
+
+/// Presses what has this name.
+pub fn press(screen: &mut Screen, name: &str) {
+    screen.get_by_label(name).click();
+    settle(screen);
+}

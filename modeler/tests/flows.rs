@@ -1,0 +1,183 @@
+//! What a person does from the empty page on, by the names that are on the screen.
+
+mod common;
+
+use blobtree::{NodePath, Operator, Shape};
+use common::*;
+use egui::{Key, Modifiers, vec2};
+use egui_kittest::kittest::Queryable as _;
+use modeler::journal::LeftBehind;
+use modeler::workbench::Workbench;
+
+fn types(screen: &Screen) -> Vec<&'static str> {
+    screen.state().bench.scene().root.children().iter().map(|node| node.type_name()).collect()
+}
+
+#[test]
+fn a_drawn_circle_becomes_the_solid_that_is_chosen_for_it() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 120.0));
+    for name in ["Inflate", "Make thick", "Turn round"] {
+        assert!(screen.query_by_label(name).is_some(), "{name} is not offered");
+    }
+    press(&mut screen, "Inflate");
+    assert_eq!(types(&screen), ["inflation"]);
+    assert!(screen.state().pad.is_empty());
+    assert_eq!(screen.state().bench.selected(), Some(&NodePath(vec![0])));
+    let solid = screen.state().solid().expect("something to see").clone();
+    assert!(solid.corners.len() > 3000 && solid.is_fine);
+    // As large as it was drawn.
+    let size = solid.bounds.size();
+    let view = screen.state().camera;
+    let rect = screen.get_by_label("Model view").rect();
+    let view = view.view(glam::Vec2::new(rect.width(), rect.height()));
+    let mm = view.mm_per_px(view.depth(glam::Vec3::ZERO));
+    assert!(size.max_element() < 245.0 * mm && size.max_element() > 200.0 * mm, "{size} at {mm} mm a point");
+}
+
+#[test]
+fn a_second_stroke_across_grows_out_of_the_first_and_a_third_inside_cuts_a_hole() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 110.0));
+    press(&mut screen, "Inflate");
+    draw(&mut screen, circle(at + vec2(110.0, 0.0), 60.0));
+    press(&mut screen, "Grow");
+    draw(&mut screen, circle(at - vec2(30.0, 0.0), 30.0));
+    press(&mut screen, "Cut a hole");
+    let undone = screen.state().bench.document().undo_names().count();
+    assert_eq!(undone, 3);
+    let before = screen.state().solid().expect("a solid").bounds;
+    for _ in 0..3 {
+        press(&mut screen, "Undo");
+    }
+    assert!(types(&screen).is_empty());
+    for _ in 0..3 {
+        press(&mut screen, "Redo");
+    }
+    let after = screen.state().solid().expect("a solid").bounds;
+    assert!(before.min.distance(after.min) < 1.0 && before.max.distance(after.max) < 1.0);
+}
+
+#[test]
+fn what_is_drawn_with_the_eraser_is_rubbed_out() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 100.0));
+    press(&mut screen, "Erase");
+    draw(&mut screen, (-20..=20).map(|i| at + vec2(100.0, 3.0 * i as f32)));
+    let sketch = screen.state().pad.sketch();
+    assert!(sketch.places().all(|p| p.is_finite()) && !sketch.is_empty());
+    assert!(screen.query_by_label("Undo").is_some());
+    screen.key_press(Key::Escape);
+    settle(&mut screen);
+    assert!(screen.state().pad.is_empty());
+}
+
+#[test]
+fn a_tap_selects_the_part_below_it_and_one_beside_selects_nothing() {
+    let mut screen = screen(None);
+    press(&mut screen, "File");
+    press(&mut screen, "Examples…");
+    press(&mut screen, "Snowman");
+    assert!(screen.state().solid().is_some_and(|solid| !solid.corners.is_empty()));
+    // All of it shows, so the middle of the view is on it.
+    let at = middle(&screen);
+    draw(&mut screen, [at]);
+    assert!(screen.state().bench.selected().is_some());
+    let corner = screen.get_by_label("Model view").rect().left_bottom();
+    draw(&mut screen, [corner + vec2(30.0, -30.0)]);
+    assert_eq!(screen.state().bench.selected(), None);
+}
+
+#[test]
+fn the_parameters_of_what_is_selected_can_be_typed() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 90.0));
+    press(&mut screen, "Make thick");
+    let length = screen.get_by_label("Length");
+    length.click();
+    screen.run_steps(2);
+    screen.get_by_label("Length").focus();
+    screen.run_steps(2);
+    screen.key_combination_modifiers(Modifiers::COMMAND, &[Key::A]);
+    screen.event(egui::Event::Text("25".into()));
+    screen.key_press(Key::Enter);
+    settle(&mut screen);
+    let node = screen.state().bench.selected_node().expect("selected").clone();
+    let Shape::Primitive(blobtree::Primitive::LinearSweep(sweep)) = &node.shape else { panic!("{node:?}") };
+    assert_eq!(sweep.length, 25.0);
+}
+
+#[test]
+fn how_parts_are_combined_can_be_changed_in_place() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 90.0));
+    press(&mut screen, "Inflate");
+    screen.get_by_label("Combined").click();
+    screen.run_steps(2);
+    press(&mut screen, "Blended widely");
+    assert!(matches!(screen.state().bench.scene().root.shape, Shape::Operator(Operator::Sum, _)));
+}
+
+#[test]
+fn what_a_killed_modeler_did_is_offered_again_with_its_history() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut first = screen(Some(folder.path().into()));
+    let at = middle(&first);
+    draw(&mut first, circle(at, 100.0));
+    press(&mut first, "Inflate");
+    press(&mut first, "Undo");
+    press(&mut first, "Redo");
+    let scene = first.state().bench.scene().to_text().expect("legal");
+    // Nothing is closed or saved: that is what a killed process leaves.
+    drop(first);
+    let left = LeftBehind::all(folder.path());
+    assert_eq!(left.iter().map(|session| session.steps).collect::<Vec<_>>(), [3]);
+    let mut second = screen(Some(folder.path().into()));
+    second.state_mut().dialog = Some(modeler::dialog::Dialog::LeftBehind(left));
+    second.run_steps(3);
+    press(&mut second, "Bring back");
+    assert_eq!(second.state().bench.scene().to_text().expect("legal"), scene);
+    assert_eq!(second.state().bench.document().undo_names().count(), 1);
+    assert!(second.state().bench.is_unsaved());
+}
+
+#[test]
+fn saving_gives_a_file_that_opens_as_the_same_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("ball.trullo");
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 100.0));
+    press(&mut screen, "Inflate");
+    assert!(screen.state().bench.is_unsaved());
+    assert!(screen.state_mut().save_to(file.clone()));
+    settle(&mut screen);
+    assert!(!screen.state().bench.is_unsaved());
+    let scene = screen.state().bench.scene().clone();
+    screen.state_mut().put(Workbench::empty_page(), None);
+    settle(&mut screen);
+    screen.state_mut().begin_open(file);
+    settle(&mut screen);
+    assert_eq!(screen.state().bench.scene(), &scene);
+}
+
+#[test]
+fn unsaved_work_is_not_lost_by_a_new_page() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 100.0));
+    press(&mut screen, "Inflate");
+    screen.key_combination_modifiers(Modifiers::COMMAND, &[Key::N]);
+    screen.run_steps(3);
+    press(&mut screen, "Cancel");
+    assert_eq!(types(&screen), ["inflation"]);
+    screen.key_combination_modifiers(Modifiers::COMMAND, &[Key::N]);
+    screen.run_steps(3);
+    press(&mut screen, "Throw away");
+    assert!(types(&screen).is_empty());
+}

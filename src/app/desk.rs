@@ -1,0 +1,119 @@
+//! The modeler's files: opened and written as the verbs of the command line do it.
+
+use crate::cli::{ConstraintArgs, ResolutionArgs};
+use crate::failure::Failure;
+use crate::input::{self, Beside, Input, Prefer};
+use crate::job::Job;
+use crate::meshing;
+use crate::output::{self, Report};
+use crate::progress::Meter;
+use crate::timings::Timings;
+use blobtree::{Scene, SceneSources};
+use modeler::desk::{Desk, Opened, Purpose};
+use polygonizer::Cancel;
+use sketch::stroke::{self, DoodleChoice, Sketch};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
+
+/// The scenes of the gallery.
+const EXAMPLES: [(&str, &str); 8] = [
+    ("Snowman", include_str!("../../examples/snowman.trullo")),
+    ("Dog's head", include_str!("../../examples/dog-head.trullo")),
+    ("Chess pawn", include_str!("../../examples/chess-pawn.trullo")),
+    ("Dice", include_str!("../../examples/dice.trullo")),
+    ("Bracket", include_str!("../../examples/bracket.trullo")),
+    ("Wrench", include_str!("../../examples/wrench.trullo")),
+    ("Twisted vase", include_str!("../../examples/twisted-vase.trullo")),
+    ("Two blobs at growing distance", include_str!("../../examples/two-blobs.trullo")),
+];
+
+/// Files on this computer.
+#[derive(Debug, Default)]
+pub struct Files {
+    browsing: Option<Receiver<Option<PathBuf>>>,
+}
+
+/// Does work that a verb does, without telling how far it is.
+fn work<T>(work: impl FnOnce(&mut Job) -> Result<T, Failure>) -> Result<T, String> {
+    let (mut timings, meter, cancel) = (Timings::default(), Meter::new(false), Cancel::new());
+    work(&mut Job::new(&mut timings, &meter, &cancel)).map_err(|failure| failure.to_string())
+}
+
+impl Desk for Files {
+    fn open(&mut self, path: &Path) -> Result<Opened, String> {
+        let is_drawing = path.extension().and_then(|e| e.to_str()).is_some_and(|extension| {
+            ["svg", "json", "ndjson"].iter().any(|drawing| extension.eq_ignore_ascii_case(drawing))
+        });
+        if is_drawing {
+            return drawing(path).map(Opened::Drawing).map_err(|failure| failure.to_string());
+        }
+        let mut report = Report::default();
+        match work(|job| input::open(path, None, Prefer::Scene, job, &mut report))? {
+            Input::Scene(scene) => Ok(Opened::Scene(scene, report.notices)),
+            Input::Mesh(_) => Err(format!(
+                "{}: a mesh without a scene; put it into a scene as a node of type mesh",
+                path.display()
+            )),
+        }
+    }
+
+    fn sources<'a>(&'a mut self, file: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
+        Box::new(Beside(file.unwrap_or(Path::new(""))))
+    }
+
+    fn export(&mut self, scene: &Scene, path: &Path, cell_mm: Option<f32>) -> Result<String, String> {
+        let resolution = ResolutionArgs { cell: cell_mm.map(f64::from), cells: None };
+        work(|job| {
+            meshing::format_of_output(path)?;
+            output::check_writable(path)?;
+            let meshed = meshing::mesh_scene(path, scene, &resolution, ConstraintArgs::default(), job)?;
+            let attachments = input::attachments(path, scene)?;
+            meshing::write_mesh(path, path, &meshed.mesh, &attachments, job)?;
+            let triangles = output::counted(meshed.mesh.triangles.len(), "triangle");
+            Ok(format!("{}: {triangles}, cells of {} mm", path.display(), output::short(meshed.cell_mm)))
+        })
+    }
+
+    fn browse(&mut self, purpose: Purpose, wake: Arc<dyn Fn() + Send + Sync>) -> bool {
+        let (sender, receiver) = mpsc::channel();
+        let dialog = match purpose {
+            Purpose::Open => rfd::FileDialog::new().add_filter(
+                "Scenes, meshes and drawings",
+                &["trullo", "3mf", "stl", "obj", "ply", "svg", "json", "ndjson"],
+            ),
+            Purpose::Save => {
+                rfd::FileDialog::new().add_filter("Scenes", &["trullo"]).set_file_name("model.trullo")
+            }
+            Purpose::Export => rfd::FileDialog::new()
+                .add_filter("Meshes", &["3mf", "stl", "obj", "ply"])
+                .set_file_name("model.3mf"),
+        };
+        self.browsing = Some(receiver);
+        let browse = move || {
+            let file = if purpose == Purpose::Open { dialog.pick_file() } else { dialog.save_file() };
+            // Nobody waits any more if the modeler has ended.
+            let _ = sender.send(file);
+            wake();
+        };
+        std::thread::Builder::new().name("files".into()).spawn(browse).is_ok()
+    }
+
+    fn browsed(&mut self) -> Option<Option<PathBuf>> {
+        let answer = self.browsing.as_ref()?.try_recv().ok()?;
+        self.browsing = None;
+        Some(answer)
+    }
+
+    fn examples(&self) -> &[(&'static str, &'static str)] {
+        &EXAMPLES
+    }
+}
+
+/// The strokes of a drawing's file.
+fn drawing(path: &Path) -> Result<Sketch, Failure> {
+    let bytes = input::read_whole(path, stroke::MAX_FILE_BYTES)?;
+    let format = stroke::detect(&bytes, Some(path)).map_err(|e| Failure::of(path, e))?;
+    let strokes = stroke::read(&bytes, format, &DoodleChoice::default()).map_err(|e| Failure::of(path, e))?;
+    Ok(Sketch::from_strokes(&strokes))
+}

@@ -1,0 +1,145 @@
+//! The window: the modeler on the screen, with a graphics card to draw it.
+
+mod desk;
+mod pipelines;
+mod stage;
+
+use crate::failure::Failure;
+use desk::Files;
+use eframe::{CreationContext, NativeOptions, egui};
+use egui_wgpu::WgpuSetup;
+use modeler::Modeler;
+use modeler::dialog::Dialog;
+use modeler::journal::LeftBehind;
+use modeler::stage::NoStage;
+use stage::Card;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The window's size at first, points.
+const SIZE: [f32; 2] = [1280.0, 800.0];
+
+/// The least size in which everything can be reached, points.
+const LEAST: [f32; 2] = [720.0, 480.0];
+
+/// The largest buffer that is asked of a graphics card, bytes: a surface of six million triangles.
+const LARGEST_BUFFER: u64 = 1 << 30;
+
+/// Opens the window, with a file on the table if one is named, and comes back when it is closed.
+///
+/// Errors: no display or no graphics driver, with what to do; a system that cannot run threads.
+pub fn run(file: Option<&Path>, sessions: Option<PathBuf>) -> Result<(), Failure> {
+    let mut options = NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Trullo")
+            .with_app_id("trullo")
+            .with_inner_size(SIZE)
+            .with_min_inner_size(LEAST),
+        ..NativeOptions::default()
+    };
+    ask_for_large_buffers(&mut options);
+    let file = file.map(Path::to_path_buf);
+    let create = move |context: &CreationContext| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
+        Ok(Box::new(App::new(context, file.as_deref(), sessions)?))
+    };
+    eframe::run_native("Trullo", options, Box::new(create)).map_err(|error| Failure::Input(advice(&error)))
+}
+
+/// Where sessions are kept: with the user's other state.
+pub fn sessions() -> Option<PathBuf> {
+    let home = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let state = home("XDG_STATE_HOME")
+        .or_else(|| home("LOCALAPPDATA"))
+        .or_else(|| home("HOME").map(|home| home.join(".local/state")));
+    state.map(|state| state.join("trullo/sessions"))
+}
+
+/// What to do where no window opens.
+fn advice(error: &eframe::Error) -> String {
+    let what = match error {
+        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
+            "there is no display to open a window on; run Trullo in a desktop session, or use the verbs of the \
+             command line (`trullo --help`), which need none"
+        }
+        _ => {
+            "no graphics driver could be used; install one for Vulkan or OpenGL (on Debian and Ubuntu: \
+             mesa-vulkan-drivers), or use the verbs of the command line (`trullo --help`), which need none"
+        }
+    };
+    format!("the window cannot be opened: {what} [{error}]")
+}
+
+fn ask_for_large_buffers(options: &mut NativeOptions) {
+    let WgpuSetup::CreateNew(setup) = &mut options.wgpu_options.wgpu_setup else { return };
+    setup.device_descriptor = Arc::new(|adapter| {
+        let has = adapter.limits();
+        let base = match adapter.get_info().backend {
+            wgpu::Backend::Gl => wgpu::Limits::downlevel_webgl2_defaults(),
+            _ => wgpu::Limits::default(),
+        };
+        wgpu::DeviceDescriptor {
+            label: Some("trullo"),
+            required_limits: wgpu::Limits {
+                max_buffer_size: has.max_buffer_size.min(LARGEST_BUFFER),
+                max_texture_dimension_2d: has.max_texture_dimension_2d.min(16384),
+                ..base
+            },
+            ..Default::default()
+        }
+    });
+}
+
+/// The modeler and its graphics card.
+struct App {
+    modeler: Modeler,
+    card: Option<Card>,
+}
+
+impl App {
+    fn new(
+        context: &CreationContext,
+        file: Option<&Path>,
+        sessions: Option<PathBuf>,
+    ) -> std::io::Result<Self> {
+        let ctx = context.egui_ctx.clone();
+        let left = sessions.as_deref().map(LeftBehind::all).unwrap_or_default();
+        let mut modeler =
+            Modeler::new(Box::new(Files::default()), sessions, Arc::new(move || ctx.request_repaint()))?;
+        if let Some(file) = file {
+            modeler.open(file);
+        }
+        if !left.is_empty() {
+            modeler.dialog = Some(Dialog::LeftBehind(left));
+        }
+        Ok(Self { modeler, card: context.wgpu_render_state.clone().map(Card::new) })
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+        match &mut self.card {
+            Some(card) => self.modeler.ui(ui, card),
+            None => self.modeler.ui(ui, &mut NoStage),
+        }
+        let ctx = ui.ctx();
+        let name = self.modeler.title();
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(name));
+        if self.modeler.quits() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if ctx.input(|input| input.viewport().close_requested()) {
+            self.modeler.quit();
+            if !self.modeler.quits() {
+                ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            }
+        }
+        let dropped: Vec<PathBuf> =
+            ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
+        for file in dropped {
+            self.modeler.begin_open(file);
+        }
+    }
+
+    fn on_exit(&mut self) {
+        self.modeler.close();
+    }
+}
