@@ -29,7 +29,10 @@ pub fn run(args: &TreeArgs, job: &mut Job) -> Result<Report, Failure> {
         collect(&scene.root, NodePath::default(), &mut places);
         let measured = places.par_iter().map(|place| {
             watch.go_on()?;
-            Ok(place.path.find_alone(&scene.root).map_or(Aabb::EMPTY, |alone| solid_box(&bakes.compile(&alone))))
+            Ok(place
+                .path
+                .find_alone(&scene.root)
+                .map_or(Aabb::EMPTY, |alone| solid_box(&bakes.compile(&alone))))
         });
         let boxes = measured.collect::<Result<Vec<Aabb>, Failure>>()?;
         Ok((places, boxes))
