@@ -41,7 +41,7 @@ const TOP: f32 = ISO + 0.25;
 
 /// How far a layer may reach beyond the one below, in lattice steps: a little less than one, so that rounding and
 /// meshing stay within the rule, and dents are made up for within some layers. It lets through 43.6° to 44.1° for 45°.
-/// With 0.985 it takes twice as many dents to settle a snowman; with 0.96 some directions let through 1.5° too little.
+/// With 0.985 it takes twice as many rounds to settle a snowman; with 0.96 some directions let through 1.5° too little.
 const REACH: f32 = 0.97;
 
 /// Bakes support-free nodes.
