@@ -21,6 +21,20 @@ fn eval_tells_value_gradient_side_and_the_nodes_that_decide() {
     assert_eq!(nodes.iter().find(deciding).expect("one decides")["name"], "body");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_display_the_modeler_says_what_to_do() {
+    let folder = Folder::with_scene("ball.trullo", SNOWMAN);
+    for arguments in [&[][..], &["ball.trullo"]] {
+        let mut command = folder.command(arguments);
+        for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+            command.env_remove(display);
+        }
+        let out = command.output().expect("it runs");
+        assert_failed(&out, "run Trullo in a desktop session");
+    }
+}
+
 #[test]
 fn tree_lists_every_node_with_its_box() {
     let folder = Folder::with_scene("s.trullo", SNOWMAN);

@@ -56,17 +56,16 @@ pub fn sessions() -> Option<PathBuf> {
 
 /// What to do where no window opens.
 fn advice(error: &eframe::Error) -> String {
-    let what = match error {
-        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
-            "there is no display to open a window on; run Trullo in a desktop session, or use the verbs of the \
-             command line (`trullo --help`), which need none"
-        }
-        _ => {
-            "no graphics driver could be used; install one for Vulkan or OpenGL (on Debian and Ubuntu: \
-             mesa-vulkan-drivers), or use the verbs of the command line (`trullo --help`), which need none"
-        }
-    };
-    format!("the window cannot be opened: {what} [{error}]")
+    let verbs = "or use the verbs of the command line (`trullo --help`), which need none";
+    match error {
+        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => format!(
+            "there is no display to open the modeler's window on; run Trullo in a desktop session, {verbs}"
+        ),
+        other => format!(
+            "no graphics driver could be used for the modeler's window ({other}); install one for Vulkan or OpenGL \
+             (on Debian and Ubuntu: mesa-vulkan-drivers), {verbs}"
+        ),
+    }
 }
 
 fn ask_for_large_buffers(options: &mut NativeOptions) {
