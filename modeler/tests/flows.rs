@@ -61,6 +61,17 @@ fn a_second_stroke_across_grows_out_of_the_first_and_a_third_inside_cuts_a_hole(
 }
 
 #[test]
+fn a_stroke_across_a_suggestion_presses_it() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 90.0));
+    let button = screen.get_by_label("Make thick").rect();
+    let (from, to) = (button.left_center() - vec2(30.0, 0.0), button.right_center() + vec2(30.0, 0.0));
+    draw(&mut screen, (0..=24).map(|i| from.lerp(to, i as f32 / 24.0)));
+    assert_eq!(types(&screen), ["sweep"]);
+}
+
+#[test]
 fn what_is_drawn_with_the_eraser_is_rubbed_out() {
     let mut screen = screen(None);
     let at = middle(&screen);

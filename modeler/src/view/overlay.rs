@@ -124,10 +124,7 @@ fn paint_line(painter: &Painter, line: Vec<Pos2>, stroke: Stroke) {
 /// The list beside the sketch, never under the pen: on the side with more room.
 fn suggestions(modeler: &mut Modeler, ui: &mut Ui, view: &View, response: &Response) {
     modeler.view.buttons.clear();
-    let Some(expectations) = modeler.pad.expectations.clone().filter(|_| modeler.pad.current().is_none())
-    else {
-        return;
-    };
+    let Some(expectations) = modeler.pad.expectations.clone() else { return };
     let places: Vec<Vec2> =
         modeler.pad.sketch().places().filter_map(|p| modeler.pad.shown(p, view)).collect();
     let lo = places.iter().fold(Vec2::INFINITY, |lo, p| lo.min(*p));
