@@ -2,10 +2,11 @@
 //!
 //! `cargo test -p sketch --features shared --test doodle_gestures -- --nocapture`. Needs `../shared/doodles`.
 
+mod doodles;
+
 use glam::Vec2;
 use sketch::gesture::{Button, Context, Gesture, recognise};
-use sketch::stroke::{DoodleChoice, FileFormat, Sketch, Stroke, read};
-use std::path::{Path, PathBuf};
+use sketch::stroke::{Sketch, Stroke};
 
 const SCREEN: Vec2 = Vec2::new(1280.0, 800.0);
 
@@ -16,29 +17,12 @@ const SIDE: f32 = 600.0;
 /// Largest share of strokes that may be taken for a gesture where it would be accepted.
 const MISTAKEN: f32 = 0.005;
 
-fn doodle_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/doodles");
-    let entries =
-        std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{} is needed: {error}", folder.display()));
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("readable").path()).collect();
-    files.retain(|path| path.extension().is_some_and(|e| e == "ndjson"));
-    files.sort();
-    files
-}
-
 /// All doodles, on the screen.
-fn doodles() -> Vec<Vec<Stroke>> {
-    let mut all = Vec::new();
-    for file in doodle_files() {
-        let bytes = std::fs::read(file).expect("readable");
-        for line in bytes.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()) {
-            let mut strokes = read(line, FileFormat::Doodles, &DoodleChoice::default()).expect("a doodle");
-            for sample in strokes.iter_mut().flat_map(|stroke| &mut stroke.samples) {
-                let place = CORNER + sample.place() * SIDE / 255.0;
-                (sample.x, sample.y) = (place.x, place.y);
-            }
-            all.push(strokes);
-        }
+fn drawings() -> Vec<Vec<Stroke>> {
+    let mut all: Vec<Vec<Stroke>> = doodles::every(1).into_iter().map(|(_, strokes)| strokes).collect();
+    for sample in all.iter_mut().flatten().flat_map(|stroke| &mut stroke.samples) {
+        let place = CORNER + sample.place() * SIDE / 255.0;
+        (sample.x, sample.y) = (place.x, place.y);
     }
     all
 }
@@ -99,7 +83,7 @@ fn read_all(units: Option<f32>) -> Counts {
     let corners = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
     let outline: Vec<Vec2> = corners.into_iter().map(|corner| CORNER + SIDE * corner).collect();
     let mut counts = Counts::default();
-    for strokes in doodles() {
+    for strokes in drawings() {
         let at = CORNER + Vec2::new(random.f32(), random.f32()) * (SIDE - 48.0);
         let button = [Button { min: at, max: at + 48.0 }];
         let mut sketch = Sketch::default();

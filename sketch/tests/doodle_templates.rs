@@ -2,12 +2,13 @@
 //!
 //! `cargo test -p sketch --features shared --test doodle_templates -- --nocapture`. Needs `../shared/doodles`.
 
+mod doodles;
+
 use blobtree::{Drawing, Template};
 use glam::DVec2;
 use sketch::curve::{Curve, fit};
-use sketch::stroke::{DoodleChoice, FileFormat, Placement, Sketch, Standing, read};
+use sketch::stroke::{Placement, Sketch, Standing, Stroke};
 use sketch::template;
-use std::path::Path;
 
 /// Every how manieth drawing is judged.
 const SAMPLE: usize = 61;
@@ -22,26 +23,10 @@ struct Slopes {
     off: usize,
 }
 
-/// Every `SAMPLE`th of the drawings in the shared folder, with their names.
-fn drawings() -> Vec<(String, Drawing)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/doodles");
-    let entries = std::fs::read_dir(folder).expect("a readable folder");
-    let mut files: Vec<_> = entries.map(|entry| entry.expect("a readable entry").path()).collect();
-    files.retain(|path| path.extension().is_some_and(|e| e == "ndjson"));
-    files.sort();
-    let mut numbered = Vec::new();
-    for path in files {
-        let bytes = std::sync::Arc::new(std::fs::read(&path).expect("a readable file"));
-        let count = bytes.split(|b| *b == b'\n').filter(|line| !line.is_empty()).count();
-        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        numbered.extend((0..count).map(|i| (name.clone(), bytes.clone(), i)));
-    }
-    let drawing = |(name, bytes, i): (String, std::sync::Arc<Vec<u8>>, usize)| {
-        let strokes = read(&bytes, FileFormat::Doodles, &DoodleChoice::Index(i)).expect("a sound file");
-        let sketch = Sketch::from_strokes(&strokes);
-        (format!("{name} {}", i + 1), Placement::of_size(&sketch, SIZE, Standing::OnGround).drawing(&sketch))
-    };
-    numbered.into_iter().step_by(SAMPLE).map(drawing).collect()
+/// A drawing of the right size on the ground.
+fn drawing(strokes: &[Stroke]) -> Drawing {
+    let sketch = Sketch::from_strokes(strokes);
+    Placement::of_size(&sketch, SIZE, Standing::OnGround).drawing(&sketch)
 }
 
 /// The distance to the nearest of some places.
@@ -90,7 +75,8 @@ fn slopes(curve: &Curve, template: &Template) -> Slopes {
 #[test]
 fn fields_of_real_drawings_rise_as_a_distance_does() {
     let (mut all, mut off, mut worst) = (0, 0, (0.0, String::new()));
-    for (name, drawing) in drawings() {
+    for (name, strokes) in doodles::every(SAMPLE) {
+        let drawing = drawing(&strokes);
         let Ok(curve) = fit(&drawing) else { continue };
         let template = template::solve(&curve, None, &[]).expect("an outline has a field");
         let slopes = slopes(&curve, &template);

@@ -1,25 +1,16 @@
 //! Suggestions with outlines that are really found and solved: drawn by a shaking hand, taken, solved again.
 
+mod front;
+
 use blobtree::build::cuboid;
-use blobtree::{Document, Field, ISO, Node, NodeRef, Operator, Primitive, Scene, Shape, Tree};
+use blobtree::{Document, Field, ISO, NodeRef, Primitive, Scene, Shape, Tree};
+use front::{SCREEN, empty_scene, front};
 use glam::{Vec2, Vec3};
 use sketch::Solver;
 use sketch::curve::NoOutline;
 use sketch::stroke::{Sketch, Stroke};
-use sketch::suggest::{Coverage, Expectations, Icon, Projection, Request, View, suggest};
+use sketch::suggest::{Coverage, Expectations, Icon, Request, suggest};
 use std::f32::consts::TAU;
-
-const SCREEN: Vec2 = Vec2::new(800.0, 600.0);
-
-/// Along +y; the origin in the middle of the screen, 10 px to a mm.
-fn front() -> View {
-    let projection = Projection::Orthographic { mm_per_px: 0.1 };
-    View::look_at(Vec3::new(0.0, -100.0, 0.0), Vec3::ZERO, SCREEN, projection)
-}
-
-fn empty_scene() -> NodeRef {
-    Node::new(Shape::Operator(Operator::Union, Vec::new())).into()
-}
 
 /// Draws along a path of the x-z plane, mm, a function of 0 to 1, with the tremor of a hand: about 1 px.
 fn draw(seed: u64, path: impl Fn(f32) -> Vec2) -> Stroke {

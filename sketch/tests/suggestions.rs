@@ -1,27 +1,17 @@
 //! The expectation list: what is suggested where, and that the commands do what their sentences say.
 
+mod front;
+
 use blobtree::build::{Build, cuboid, point, union};
 use blobtree::{
-    Command, Document, Drawing, DrawnStroke, Field, FieldImage, ISO, Node, NodePath, NodeRef, Operator,
-    Scene, Shape, Template, Tree,
+    Command, Document, Drawing, DrawnStroke, Field, FieldImage, ISO, NodePath, NodeRef, Scene, Template, Tree,
 };
+use front::{SCREEN, empty_scene, front};
 use glam::{Vec2, Vec3};
 use sketch::stroke::{PenSample, Sketch, Stroke};
 use sketch::suggest::{Coverage, Expectations, Icon, Outlines, Projection, Request, View, suggest};
 use std::f32::consts::TAU;
 use std::sync::Arc;
-
-const SCREEN: Vec2 = Vec2::new(800.0, 600.0);
-
-/// Along +y, as someone stands before a thing; the origin in the middle of the screen, 10 px to a mm.
-fn front() -> View {
-    let projection = Projection::Orthographic { mm_per_px: 0.1 };
-    View::look_at(Vec3::new(0.0, -100.0, 0.0), Vec3::ZERO, SCREEN, projection)
-}
-
-fn empty_scene() -> NodeRef {
-    Node::new(Shape::Operator(Operator::Union, Vec::new())).into()
-}
 
 /// A round outline about a place of the model's x-z plane, mm, as seen from the front.
 fn ring(x: f32, z: f32, radius: f32) -> Stroke {
