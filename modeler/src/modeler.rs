@@ -48,6 +48,8 @@ pub struct Modeler {
     held_middle: Option<Vec3>,
     /// The form of the selected node, and the scene it was made for.
     pub(crate) form: Option<(NodeRef, Form)>,
+    /// The file to be opened as soon as the size of the view is known, which drawings need.
+    waiting: Option<PathBuf>,
     solids: SolidMaker,
     solid: Option<Arc<Solid>>,
     /// The tree of which the solid was asked for last.
@@ -86,6 +88,7 @@ impl Modeler {
             boxes: Default::default(),
             held_middle: None,
             form: None,
+            waiting: None,
             solids: SolidMaker::start(wake.clone())?,
             solid: None,
             asked: None,
@@ -101,6 +104,9 @@ impl Modeler {
         crate::keys::heed(self, ui);
         panels::show(self, ui);
         view::show(self, ui, stage);
+        if let Some(file) = self.waiting.take() {
+            self.open(&file);
+        }
         crate::dialog::show(self, ui);
         self.notices.show(ui);
         self.ask();
@@ -368,6 +374,11 @@ impl Modeler {
                 false
             }
         }
+    }
+
+    /// Opens a file with the first frame.
+    pub fn begin_with(&mut self, file: PathBuf) {
+        self.waiting = Some(file);
     }
 
     /// Opens a file, if nothing is lost by it.

@@ -1,9 +1,12 @@
 //! What the user is told: a few lines that go away by themselves, and warnings that stay until they are read.
 
-use egui::{Align2, Area, Color32, Frame, Id, Order, Ui};
+use egui::{Align2, Area, Color32, Frame, Id, Label, Order, RichText, Ui};
 
 /// How long a line stays, seconds.
 const STAYS: f64 = 5.0;
+
+/// The width at which a text goes on in a new line, points.
+const WIDEST: f32 = 560.0;
 
 /// Most lines at a time.
 const MOST: usize = 4;
@@ -60,18 +63,14 @@ impl Notices {
             for (i, line) in self.lines.iter().enumerate() {
                 let fill =
                     if line.is_warning { Color32::from_rgb(150, 50, 40) } else { Color32::from_gray(50) };
-                Frame::new().fill(fill).corner_radius(6.0).inner_margin(8.0).outer_margin(3.0).show(
-                    ui,
-                    |ui| {
-                        ui.horizontal(|ui| {
-                            ui.set_max_width(560.0);
-                            ui.colored_label(Color32::WHITE, &line.text);
-                            if line.is_warning && ui.button("I see").clicked() {
-                                read = Some(i);
-                            }
-                        });
-                    },
-                );
+                let frame = Frame::new().fill(fill).corner_radius(6.0).inner_margin(8.0).outer_margin(3.0);
+                frame.show(ui, |ui| {
+                    ui.set_max_width(WIDEST);
+                    ui.add(Label::new(RichText::new(&line.text).color(Color32::WHITE)).wrap());
+                    if line.is_warning && ui.button("I see").clicked() {
+                        read = Some(i);
+                    }
+                });
             }
         });
         if let Some(read) = read {

@@ -4,10 +4,11 @@ mod common;
 
 use blobtree::{NodePath, Operator, Shape};
 use common::*;
-use egui::{Key, Modifiers, vec2};
+use egui::{Key, Modifiers, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use modeler::journal::LeftBehind;
 use modeler::workbench::Workbench;
+use sketch::stroke::{Stroke, write_strokes};
 
 fn types(screen: &Screen) -> Vec<&'static str> {
     screen.state().bench.scene().root.children().iter().map(|node| node.type_name()).collect()
@@ -58,6 +59,20 @@ fn a_second_stroke_across_grows_out_of_the_first_and_a_third_inside_cuts_a_hole(
     }
     let after = screen.state().solid().expect("a solid").bounds;
     assert!(before.min.distance(after.min) < 1.0 && before.max.distance(after.max) < 1.0);
+}
+
+#[test]
+fn a_drawing_that_the_modeler_begins_with_fills_the_view_and_may_become_a_solid() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("circle.json");
+    let drawn = Stroke::through(circle(pos2(7.0, 9.0), 3.0).map(|p| glam::Vec2::new(p.x, p.y)));
+    std::fs::write(&file, write_strokes(&[drawn])).expect("a file");
+    let mut screen = screen_with(None, |modeler| modeler.begin_with(file));
+    let [lo, hi] = screen.state().pad.sketch().bounds().expect("it is there");
+    let rect = screen.get_by_label("Model view").rect();
+    assert!(((hi - lo).max_element() / rect.size().min_elem() - 0.75).abs() < 0.01, "{lo} to {hi}");
+    press(&mut screen, "Inflate");
+    assert_eq!(types(&screen), ["inflation"]);
 }
 
 #[test]

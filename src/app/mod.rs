@@ -105,7 +105,7 @@ impl App {
         let mut modeler =
             Modeler::new(Box::new(Files::default()), sessions, Arc::new(move || ctx.request_repaint()))?;
         if let Some(file) = file {
-            modeler.open(file);
+            modeler.begin_with(file.to_path_buf());
         }
         if !left.is_empty() {
             modeler.dialog = Some(Dialog::LeftBehind(left));

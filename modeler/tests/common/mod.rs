@@ -8,6 +8,7 @@ use mesh::MeshDistance;
 use modeler::Modeler;
 use modeler::desk::{Desk, Opened, Purpose};
 use modeler::stage::NoStage;
+use sketch::stroke::{DoodleChoice, FileFormat, Sketch, read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -31,6 +32,11 @@ impl SceneSources for Solver {
 impl Desk for TestDesk {
     fn open(&mut self, path: &Path) -> Result<Opened, String> {
         let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        if path.extension().is_some_and(|extension| extension == "json") {
+            let strokes =
+                read(&bytes, FileFormat::Strokes, &DoodleChoice::default()).map_err(|e| e.to_string())?;
+            return Ok(Opened::Drawing(Sketch::from_strokes(&strokes)));
+        }
         let scene = Scene::from_bytes(&bytes, &mut Solver).map_err(|e| e.to_string())?;
         Ok(Opened::Scene(scene, Vec::new()))
     }
@@ -62,7 +68,13 @@ pub type Screen = Harness<'static, Modeler>;
 
 /// One with an empty page.
 pub fn screen(sessions: Option<PathBuf>) -> Screen {
-    let modeler = Modeler::new(Box::new(TestDesk), sessions, Arc::new(|| ())).expect("threads");
+    screen_with(sessions, |_| ())
+}
+
+/// One that begins as `prepare` says.
+pub fn screen_with(sessions: Option<PathBuf>, prepare: impl FnOnce(&mut Modeler)) -> Screen {
+    let mut modeler = Modeler::new(Box::new(TestDesk), sessions, Arc::new(|| ())).expect("threads");
+    prepare(&mut modeler);
     let builder = Harness::builder().with_size([1280.0, 800.0]);
     let mut screen =
         builder.build_ui_state(|ui, modeler: &mut Modeler| modeler.ui(ui, &mut NoStage), modeler);
