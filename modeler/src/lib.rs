@@ -8,6 +8,7 @@
 //! changed is asked of the background threads, [`solid`] for the surface and [`expecting`] for the sketch. The frame
 //! itself waits for neither.
 
+mod brought;
 pub mod camera;
 pub mod desk;
 pub mod dialog;
@@ -18,6 +19,7 @@ pub mod journal;
 pub mod keys;
 mod modeler;
 mod newest;
+mod node_box;
 pub mod notices;
 pub mod pad;
 mod panels;

@@ -1,10 +1,12 @@
 //! All that the modeler is, and how its parts hear of each other.
 
+use crate::brought::newest;
 use crate::camera::{Camera, Side};
 use crate::desk::{Desk, Opened};
 use crate::dialog::{Dialog, Then};
 use crate::expecting::{Asked, Thinker};
 use crate::form::Form;
+use crate::node_box::NodeBox;
 use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
 use crate::panels;
@@ -14,9 +16,8 @@ use crate::solid::{Solid, SolidMaker};
 use crate::stage::Stage;
 use crate::view::{self, ViewState};
 use crate::workbench::{EditError, Workbench};
-use blobtree::{Aabb, Command, JournalEntry, NodePath, NodeRef, Scene, Shape, Tree, solid_box};
+use blobtree::{Aabb, Command, JournalEntry, NodePath, NodeRef, Scene};
 use glam::Vec3;
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -417,52 +418,6 @@ impl Modeler {
         match self.desk.export(self.bench.scene(), path, None) {
             Ok(written) => self.notices.tell(written),
             Err(error) => self.notices.warn(format!("Not exported: {error}")),
-        }
-    }
-}
-
-/// Where a node is, remembered for as long as neither it nor anything around it changes.
-#[derive(Debug, Default)]
-struct NodeBox {
-    of: Option<(NodeRef, NodePath)>,
-    /// Around its solid, mm; none for a node without one.
-    solid: Option<Aabb>,
-}
-
-impl NodeBox {
-    fn follow(&mut self, root: &NodeRef, path: Option<&NodePath>) {
-        let same = |(known, at): &(NodeRef, NodePath)| NodeRef::ptr_eq(known, root) && path == Some(at);
-        if path.is_some() && self.of.as_ref().is_some_and(same) {
-            return;
-        }
-        self.of = path.map(|path| (root.clone(), path.clone()));
-        let alone = path.and_then(|path| path.find_alone(root));
-        self.solid = alone.map(|alone| solid_box(&Tree::new(&alone))).filter(|solid| !solid.is_empty());
-    }
-}
-
-/// The primitive that a command brought: the last one of the new tree that is not in the old one.
-fn newest(old: &NodeRef, new: &NodeRef) -> Option<NodePath> {
-    let mut known = HashSet::new();
-    walk(old, &mut NodePath::default(), &mut |node, _| known.insert(Arc::as_ptr(node)));
-    let mut found = None;
-    walk(new, &mut NodePath::default(), &mut |node, path| {
-        let is_new = !known.contains(&Arc::as_ptr(node));
-        if is_new && matches!(node.shape, Shape::Primitive(_)) {
-            found = Some(path.clone());
-        }
-        is_new
-    });
-    found
-}
-
-/// Visits nodes, parents first, and goes below those for which `visit` says so.
-fn walk(node: &NodeRef, path: &mut NodePath, visit: &mut impl FnMut(&NodeRef, &NodePath) -> bool) {
-    if visit(node, path) {
-        for (index, child) in node.children().iter().enumerate() {
-            path.0.push(index);
-            walk(child, path, visit);
-            path.0.pop();
         }
     }
 }

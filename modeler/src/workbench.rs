@@ -91,11 +91,10 @@ impl Workbench {
         self.file.as_deref()
     }
 
-    /// Whether anything is different from what is in the user's file.
+    /// Whether anything was done since the scene was opened or saved, and not undone.
     pub fn is_unsaved(&self) -> bool {
         let now = self.scene();
-        !NodeRef::ptr_eq(&now.root, &self.saved.root) && now.root != self.saved.root
-            || now.title != self.saved.title
+        !NodeRef::ptr_eq(&now.root, &self.saved.root) || now.title != self.saved.title
     }
 
     /// Whether everything done is on disk.
