@@ -140,9 +140,12 @@ fn every_example_stands_on_the_bed_and_is_a_printable_solid() {
             report.bodies,
             mesh.volume()
         );
-        // Sheets closer than a cell may touch or cross; everything else must be in order.
+        // At one crease of the snowman, three pairs cross in cells of just this size. The goal is none.
         let findings = report.findings().filter(|finding| finding.fault != Fault::Crossing);
-        let findings: Vec<String> = findings.take(5).map(ToString::to_string).collect();
+        let mut findings: Vec<String> = findings.take(5).map(ToString::to_string).collect();
+        if report.count(Fault::Crossing) > if name == "snowman" { 3 } else { 0 } {
+            findings.push(format!("{} pairs of triangles cross", report.count(Fault::Crossing)));
+        }
         if !report.is_closed() || !report.is_edge_manifold() || !report.is_oriented() || !findings.is_empty()
         {
             bad.push(format!("{name}: {findings:?}"));

@@ -68,6 +68,9 @@ const SETTLED: f64 = 0.005;
 /// Cells along the longest side of a random solid, until it is shown.
 const CELLS: [u32; 5] = [40, 80, 160, 320, 640];
 
+/// Crossing pairs of triangles that examples have left, by name and cells across. The goal is none.
+const CROSSING: [(&str, u32, usize); 3] = [("forest", 32, 13), ("snowman", 128, 3), ("twisted-vase", 64, 40)];
+
 fn has_settled(coarse: &Mesh, fine: &Mesh) -> bool {
     (coarse.volume() / fine.volume() - 1.0).abs() < SETTLED
 }
@@ -84,9 +87,15 @@ fn every_example_meshes_soundly_at_every_resolution_and_has_its_volume_where_tha
         let mut finer: Option<Mesh> = None;
         for cells in all.iter().rev() {
             let mm = longest / *cells as f32;
+            let allowed =
+                CROSSING.iter().find(|(at, of, _)| *at == name && of == cells).map_or(0, |(.., n)| *n);
             let name = format!("{name} at {cells} cells");
             let mesh = surface(&tree, mm).mesh();
             let report = complaints.check_sound(&mesh, mm, &name);
+            let crossing = mesh.crossings().count;
+            if crossing > allowed {
+                complaints.note(format!("{name}: {crossing} pairs of triangles cross"));
+            }
             let settled = finer.as_ref().is_none_or(|finer| has_settled(&mesh, finer));
             let off = if settled {
                 complaints.check_volume(&mesh, field, &name)

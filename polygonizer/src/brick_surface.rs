@@ -9,7 +9,7 @@ use crate::feature::{FeatureScratch, Placement};
 use crate::grid::{Grid, Site, bits, is_inside};
 use crate::lattice::{BrickKey, CELLS, Lattice, block_of};
 use crate::patches::{FLIPPED, NONE, PATCHES, face_corners};
-use crate::place::{Batch, Vertex, VertexKind, place_smooth};
+use crate::place::{Batch, Vertex, VertexKind, bring_back, place_smooth};
 
 /// Rows of cells in a brick.
 const ROWS: usize = CELLS * CELLS;
@@ -279,7 +279,8 @@ impl<'f> Worker<'f> {
                 mixed.first_vertex = self.sites.len() as u16;
                 let cell = [x as u8, (row % CELLS) as u8, (row / CELLS) as u8];
                 for &edges in &patches.edges[..usize::from(patches.count)] {
-                    self.sites.push(Site { cell, config: mixed.key as u8, edges });
+                    let shares_cell = patches.count > 1;
+                    self.sites.push(Site { cell, config: mixed.key as u8, edges, shares_cell });
                 }
             }
         }
@@ -300,6 +301,7 @@ impl<'f> Worker<'f> {
             pending.extend(0..sites.len() as u32);
         }
         place_smooth(&mut **sampler, grid, sites, pending, vertices, batch);
+        bring_back(&mut **sampler, grid, sites, vertices, batch);
     }
 }
 

@@ -24,12 +24,24 @@ pub(crate) struct Site {
     pub config: u8,
     /// The patch's crossed edges, as bits.
     pub edges: u16,
+    /// Whether the cell has other patches.
+    pub shares_cell: bool,
 }
 
 impl Site {
     /// The numbers of the crossed edges.
     pub fn crossed_edges(self) -> impl Iterator<Item = usize> {
         bits(self.edges)
+    }
+
+    /// The sum of the directions in which its edges lead out of the solid.
+    pub fn outward(self) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for edge in self.crossed_edges() {
+            let start_is_inside = self.config >> edge_start(edge) & 1 == 1;
+            sum[edge / 4] += if start_is_inside { 1.0 } else { -1.0 };
+        }
+        sum
     }
 }
 

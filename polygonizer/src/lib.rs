@@ -55,10 +55,11 @@
 //! Manifold dual contouring on the lattice of all integer multiples of the cell size, in bricks of 15³ cells.
 //! Bounds prove most of space empty, in blocks of 4³ bricks and then bricks. Then, each brick by itself:
 //!
-//! 1. one vertex for every patch of every cell that the surface passes (`patches`), on the surface if that is
-//!    smooth there (`place`), else on its sharp edge or corner (`feature`);
+//! 1. one vertex for every patch of every cell that the surface passes (`patches`), on the patch's own sheet of the
+//!    surface if that is smooth there (`place`), else on its sharp edge or corner (`feature`);
 //! 2. features that had to leave their cells' safe boxes (`bold`) are admitted if no triangle suffers (`settle`);
-//! 3. one quadrilateral, cut in two, for every lattice edge that the surface crosses (`stitch`);
+//! 3. one quadrilateral for every lattice edge that the surface crosses (`stitch`), cut in two so that no triangle is
+//!    turned over if that can be (`ring`);
 //! 4. one vertex more on every line that cuts off a sharp edge (`crease`, `split`).
 //!
 //! A brick's vertices depend on the field in it and one cell around only. So an update remakes the bricks that
@@ -67,7 +68,7 @@
 //! # What it does not do
 //!
 //! Parts of the solid that hold no lattice point and gaps that no lattice point lies in are not seen: choose
-//! cells smaller than what matters. Sheets closer than a cell may touch or cross. Lines that cut off sharp edges are
+//! cells smaller than what matters. Sheets closer than a cell may touch, and at a few places cross. Lines that cut off sharp edges are
 //! split, but not turned: a triangle that joins the three edges of a corner, past that corner, stays.
 
 mod bold;

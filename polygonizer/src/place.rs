@@ -38,6 +38,11 @@ const NEWTON_ROUNDS: usize = 4;
 /// Bisections of a path of at most √3 cells: down to a 1000th of a cell.
 const BISECTIONS: usize = 11;
 
+/// How far a vertex's normal may lean from the way that its patch's edges lead outwards, as a dot product, before it is
+/// taken to be on another sheet. The normal of a plane through the edges has 0.5 and more; where edges are sharp, that of
+/// a face may have 0.3.
+const ASTRAY: f32 = 0.1;
+
 /// Points on their way to a sampler and what comes back. Reused.
 #[derive(Default)]
 pub(crate) struct Batch {
@@ -142,14 +147,7 @@ fn bisect(
             }
         })
         .collect();
-    for _ in 0..BISECTIONS {
-        batch.points.clear();
-        batch.points.extend(brackets.iter().map(Bracket::middle));
-        for (&value, bracket) in batch.evaluate(sampler).iter().zip(&mut brackets) {
-            let middle = bracket.middle();
-            *(if is_inside(value) { &mut bracket.inside } else { &mut bracket.outside }) = middle;
-        }
-    }
+    narrow(sampler, &mut brackets, batch);
     batch.points.clear();
     batch.points.extend(brackets.iter().zip(pending.iter()).map(|(bracket, &i)| {
         let own = grid.own_box(sites[i as usize].cell);
@@ -159,6 +157,69 @@ fn bisect(
     for (n, i) in pending.drain(..).enumerate() {
         vertices[i as usize].position = batch.points[n];
         vertices[i as usize].normal = outward(&batch.samples[n]);
+    }
+}
+
+/// Brings vertices back that the field led to the sheet of another patch of their cell: to where the surface crosses
+/// one of their own patch's edges.
+pub(crate) fn bring_back(
+    sampler: &mut dyn Sampler,
+    grid: &Grid,
+    sites: &[Site],
+    vertices: &mut [Vertex],
+    batch: &mut Batch,
+) {
+    let is_astray = |site: &Site, vertex: &Vertex| {
+        let is_smooth = vertex.kind == VertexKind::Smooth;
+        is_smooth && site.outward().normalize_or_zero().dot(vertex.normal) < ASTRAY
+    };
+    let numbered = sites.iter().zip(&*vertices).enumerate().filter(|(_, (site, _))| site.shares_cell);
+    let astray: Vec<usize> =
+        numbered.filter(|(_, (site, vertex))| is_astray(site, vertex)).map(|(number, _)| number).collect();
+    if astray.is_empty() {
+        return;
+    }
+    let mut brackets: Vec<Bracket> = astray.iter().map(|&i| nearest_edge(grid, sites[i])).collect();
+    narrow(sampler, &mut brackets, batch);
+    batch.points.clear();
+    batch.points.extend(brackets.iter().zip(&astray).map(|(bracket, &i)| {
+        let own = grid.own_box(sites[i].cell);
+        bracket.middle().clamp(own.min, own.max)
+    }));
+    batch.sample(sampler);
+    for (n, i) in astray.into_iter().enumerate() {
+        vertices[i].position = batch.points[n];
+        vertices[i].normal = outward(&batch.samples[n]);
+    }
+}
+
+/// The crossed edge of a patch that is crossed nearest to the mean of all crossings.
+fn nearest_edge(grid: &Grid, site: Site) -> Bracket {
+    let mean = grid.mean_crossing(site);
+    let ends = |edge: usize| {
+        let start = edge_start(edge);
+        let [from, to] = [start, start | 1 << (edge / 4)].map(|c| grid.point(corner(site.cell, c)));
+        let t = grid.linear_crossing(corner(site.cell, start), edge / 4);
+        let bracket = if site.config >> start & 1 == 1 {
+            Bracket { inside: from, outside: to }
+        } else {
+            Bracket { inside: to, outside: from }
+        };
+        (from.lerp(to, t).distance_squared(mean), bracket)
+    };
+    let nearest = site.crossed_edges().map(ends).min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.expect("a patch has at least three crossed edges").1
+}
+
+/// Halves the paths until their ends meet on the surface.
+fn narrow(sampler: &mut dyn Sampler, brackets: &mut [Bracket], batch: &mut Batch) {
+    for _ in 0..BISECTIONS {
+        batch.points.clear();
+        batch.points.extend(brackets.iter().map(Bracket::middle));
+        for (&value, bracket) in batch.evaluate(sampler).iter().zip(&mut *brackets) {
+            let middle = bracket.middle();
+            *(if is_inside(value) { &mut bracket.inside } else { &mut bracket.outside }) = middle;
+        }
     }
 }
 

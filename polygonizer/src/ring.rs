@@ -1,10 +1,10 @@
 //! The four vertices around a crossed lattice edge, and how to cut their quadrilateral.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 use crate::brick_surface::MixedCell;
 use crate::lattice::CELLS;
-use crate::patches::{PATCHES, edge_start};
+use crate::patches::{NONE, PATCHES, edge_start};
 use crate::place::{Vertex, VertexKind};
 
 /// A brick and the 26 around it; that at offset `[x, y, z]` has the index `(x+1) + 3 (y+1) + 9 (z+1)`.
@@ -50,7 +50,8 @@ const STRIDES: [usize; 3] = [1, 3, 9];
 /// The vertices around `edge` of `cell`, counter-clockwise seen from outside. `mixed_at` finds the mixed cell
 /// at a place of a brick of [`Around`].
 ///
-/// `None` if a brick is missing that its bounds wrongly proved empty.
+/// `None` if a brick is missing that its bounds wrongly proved empty, or cells do not agree on the edge, which an update
+/// with too small a box can do.
 #[inline]
 pub(crate) fn ring_around(
     mut mixed_at: impl FnMut(usize, [usize; 3]) -> Option<MixedCell>,
@@ -74,6 +75,9 @@ pub(crate) fn ring_around(
         }
         let mixed = mixed_at(brick, at)?;
         let patch = patches[usize::from(mixed.key)].of_edge[4 * axis + back_u + 2 * back_v];
+        if patch == NONE {
+            return None;
+        }
         *vertex = VertexRef::new(brick, mixed.first_vertex + u16::from(patch));
     }
     if config >> start & 1 == 0 {
@@ -98,6 +102,18 @@ const FLAT: f32 = 1e-3;
 /// known as not turned over whatever it looks like along the edge. At a right-angled sharp edge, where normals
 /// are means, a right triangle has 0.7; at a corner of three right angles 0.58.
 const AGREEMENT: f32 = 0.3;
+
+/// Triangles of sharp vertices slimmer than this face anywhere, and do no harm: three along one edge make such.
+const SLIVER: f32 = 3e-3;
+
+/// A cut is taken to be turned over when a triangle's normal and the outward normal at a corner have a smaller dot
+/// product. With 0, a few triangles more lie over their neighbours, where gaps are narrow; a fair one at a sharp edge
+/// has 0.2, see [`AGREEMENT`].
+const FACING: f32 = 0.1;
+
+/// A feature may not leave its cell if its ring can only be cut into triangles turned over more than this. With −0.5,
+/// five times as many triangles cross where slivers of solids end; with 0.1, more of the edges of boxes is cut off.
+const TURNED_OVER: f32 = -0.2;
 
 /// For each diagonal, how much more than the least area the smaller of its two triangles has, mm²; first for
 /// that from 0 to 2. None above 0: no cut without a flat triangle or one turned over.
@@ -127,20 +143,65 @@ pub(crate) fn spare_areas(vertices: [&Vertex; 4], axis: usize, start_inside: boo
     })
 }
 
+/// How the two triangles of each diagonal lie; first for that from 0 to 2.
+fn cuts(vertices: [&Vertex; 4]) -> [Cut; 2] {
+    [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]].map(|[first, second]| {
+        let of = |corners: [usize; 3]| Cut::triangle(corners.map(|i| vertices[i]));
+        let (first, second) = (of(first), of(second));
+        Cut { slimness: first.slimness.min(second.slimness), facing: first.facing.min(second.facing) }
+    })
+}
+
+/// The worse of a quadrilateral's two triangles, in each respect.
+struct Cut {
+    /// Height over longest side, about.
+    slimness: f32,
+    /// The dot product of the normal and that outward normal at a corner that it agrees with least; 1 for slivers
+    /// along sharp edges.
+    facing: f32,
+}
+
+impl Cut {
+    fn triangle(corners: [&Vertex; 3]) -> Self {
+        let [a, b, c] = corners.map(|vertex| vertex.position);
+        let normal = (b - a).cross(c - a);
+        let twice = normal.length();
+        let longest2 = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+        let slimness = twice / longest2;
+        let least = corners.map(|vertex| vertex.normal.dot(normal)).into_iter().fold(twice, f32::min);
+        let lies_along_edge =
+            slimness < SLIVER && corners.iter().all(|vertex| vertex.kind != VertexKind::Smooth);
+        Self { slimness, facing: if lies_along_edge { 1.0 } else { least / twice } }
+    }
+}
+
+/// Whether a ring can be cut into triangles that are not turned over, as far as normals tell: at corners, where they
+/// are means of three faces or more, they do not.
+pub(crate) fn faces_outward(vertices: [&Vertex; 4], spare: [f32; 2], least_spare: f32) -> bool {
+    let has_corner = has_corner(vertices);
+    let cuts = cuts(vertices);
+    (0..2).any(|i| spare[i] > least_spare && (has_corner || cuts[i].facing >= TURNED_OVER))
+}
+
+fn has_corner(vertices: [&Vertex; 4]) -> bool {
+    vertices.iter().any(|vertex| vertex.kind == VertexKind::Corner)
+}
+
 /// Whether the diagonal from 1 to 3 is better than that from 0 to 2.
 ///
-/// First, no triangle may be turned over, flat or nearly so; then sharp edges are joined, from corner to
-/// corner if possible; then the shorter diagonal is taken.
+/// First, no triangle may be flat or turned over; then sharp edges are joined, from corner to corner if possible; then
+/// the shorter diagonal is taken.
 pub(crate) fn prefers_second(vertices: [&Vertex; 4], spare: [f32; 2]) -> bool {
     if spare[0] <= 0.0 || spare[1] <= 0.0 {
         return spare[1] > spare[0];
     }
-    let slimness = [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]].map(|[first, second]| {
-        let of = |corners: [usize; 3]| slimness(corners.map(|i| vertices[i].position));
-        of(first).min(of(second))
-    });
-    if slimness[0].min(slimness[1]) < FLAT {
-        return slimness[1] > slimness[0];
+    let [first, second] = cuts(vertices);
+    if first.slimness.min(second.slimness) < FLAT {
+        return second.slimness > first.slimness;
+    }
+    let facing = [first, second].map(|cut| cut.facing.min(FACING));
+    if facing[0] != facing[1] && (facing.contains(&FACING) || !has_corner(vertices)) {
+        return facing[1] > facing[0];
     }
     let sharpness = |a: usize, b: usize| {
         let (a, b) = (vertices[a].kind, vertices[b].kind);
@@ -155,8 +216,37 @@ pub(crate) fn prefers_second(vertices: [&Vertex; 4], spare: [f32; 2]) -> bool {
     }
 }
 
-/// Height over longest side, about.
-fn slimness([a, b, c]: [Vec3; 3]) -> f32 {
-    let longest2 = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
-    (b - a).cross(c - a).length() / longest2
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    fn smooth(x: f32, y: f32, z: f32, normal: Vec3) -> Vertex {
+        Vertex { position: Vec3::new(x, y, z), normal, kind: VertexKind::Smooth }
+    }
+
+    /// A ring around the lattice edge along z at the origin: one vertex hangs low on a wall, below a flat part.
+    fn beside_a_wall() -> [Vertex; 4] {
+        let wall = Vec3::new(0.9, 0.4, 0.1).normalize();
+        [
+            smooth(-0.5, -0.7, 0.7, Vec3::Z),
+            smooth(0.4, -0.4, -0.5, wall),
+            smooth(0.1, 0.4, 0.0, Vec3::Z),
+            smooth(-0.1, 0.6, -0.1, Vec3::Z),
+        ]
+    }
+
+    #[test]
+    fn a_diagonal_that_turns_no_triangle_over_beats_a_shorter_one() {
+        let ring = beside_a_wall();
+        for turn in 0..4 {
+            let turned: [&Vertex; 4] = std::array::from_fn(|i| &ring[(i + turn) % 4]);
+            let spare = spare_areas(turned, 2, true, 1.0);
+            assert!(spare.iter().all(|spare| *spare > 0.0), "seen along the edge, both will do: {spare:?}");
+            assert_eq!(prefers_second(turned, spare), turn % 2 == 1, "turned by {turn}");
+            let length = |a: usize, b: usize| turned[a].position.distance(turned[b].position);
+            assert_eq!(length(1, 3) < length(0, 2), turn % 2 == 0, "the shorter one is the other");
+        }
+    }
 }

@@ -10,7 +10,7 @@ use blobtree::BRICK_SAMPLES;
 use crate::brick_surface::{Bold, BrickSurface};
 use crate::patches::edge_start;
 use crate::place::Vertex;
-use crate::ring::{Around, OWN, ROOM, VertexRef, ring_around, spare_areas};
+use crate::ring::{Around, OWN, ROOM, VertexRef, faces_outward, ring_around, spare_areas};
 
 // Vertex numbers have 16 bits: four patches in each cell at most.
 const _: () = assert!(4 * BRICK_SAMPLES <= 1 << 16);
@@ -81,6 +81,6 @@ fn all_can_be_cut(choices: &[Vec<Vertex>; 4], axis: usize, start_inside: bool, s
             &choices[i][choice]
         });
         let spare = spare_areas(vertices, axis, start_inside, spacing);
-        spare.into_iter().any(|spare| spare > ROOM * spacing * spacing)
+        faces_outward(vertices, spare, ROOM * spacing * spacing)
     })
 }

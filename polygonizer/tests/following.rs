@@ -62,6 +62,26 @@ fn after_random_edits_an_updated_surface_equals_a_fresh_one_exactly() {
     }
 }
 
+/// Against the contract of `update`, so it need not be right; but it must not be the end.
+#[test]
+fn an_update_with_too_small_a_box_does_no_harm_that_the_next_cannot_mend() {
+    for seed in 0..20 {
+        let mut random = Random(seed);
+        let parts: Vec<_> = (0..5).map(|_| random_part(&mut random)).collect();
+        let mut surface = Surface::build(&body(&parts), cell(0.4), &Options::default()).expect("small");
+        let others: Vec<_> = (0..5).map(|_| random_part(&mut random)).collect();
+        let too_small = Aabb::around(random.point(5.0), Vec3::splat(random.between(0.1, 5.0)));
+        surface.update(&body(&others), too_small, &Options::default()).expect("small");
+        assert_eq!(surface.bricks().map(|key| surface.chunk(key).mesh.triangles.len()).sum::<usize>(), {
+            surface.mesh().triangles.len()
+        });
+        let everywhere = Aabb::around(Vec3::ZERO, Vec3::splat(1e6));
+        surface.update(&body(&others), everywhere, &Options::default()).expect("small");
+        let fresh = Surface::build(&body(&others), cell(0.4), &Options::default()).expect("small");
+        assert!(surface == fresh, "seed {seed}: the update differs");
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_mesh() {
     let mut random = Random(77);
