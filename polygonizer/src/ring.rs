@@ -95,16 +95,14 @@ const LEAST_AREA: f32 = 1e-6;
 pub(crate) const ROOM: f32 = 3e-4;
 
 /// A triangle whose height is a smaller share of its longest side is nearly flat: three vertices along one
-/// sharp edge make triangles of rounding errors.
-const FLAT: f32 = 1e-3;
+/// sharp edge, or along the border of a cell, make triangles of rounding errors. With 1e-3, a few in millions have no
+/// area where cells are small and far from the origin; with 3e-2, a third more triangles cross.
+const FLAT: f32 = 3e-3;
 
 /// How close to the outward normals at its corners a triangle's normal must be (as a dot product) to be
 /// known as not turned over whatever it looks like along the edge. At a right-angled sharp edge, where normals
 /// are means, a right triangle has 0.7; at a corner of three right angles 0.58.
 const AGREEMENT: f32 = 0.3;
-
-/// Triangles of sharp vertices slimmer than this face anywhere, and do no harm: three along one edge make such.
-const SLIVER: f32 = 3e-3;
 
 /// A cut is taken to be turned over when a triangle's normal and the outward normal at a corner have a smaller dot
 /// product. With 0, a few triangles more lie over their neighbours, where gaps are narrow; a fair one at a sharp edge
@@ -170,7 +168,7 @@ impl Cut {
         let slimness = twice / longest2;
         let least = corners.map(|vertex| vertex.normal.dot(normal)).into_iter().fold(twice, f32::min);
         let lies_along_edge =
-            slimness < SLIVER && corners.iter().all(|vertex| vertex.kind != VertexKind::Smooth);
+            slimness < FLAT && corners.iter().all(|vertex| vertex.kind != VertexKind::Smooth);
         Self { slimness, facing: if lies_along_edge { 1.0 } else { least / twice } }
     }
 }
