@@ -26,6 +26,9 @@ pub struct Cli {
     pub verb: Option<Verb>,
     /// A scene, a mesh or a drawing to open in the modeler.
     pub file: Option<PathBuf>,
+    /// Write down how long the modeler lets its user wait: a line of JSON for each wait and each frame.
+    #[arg(long, value_name = "FILE")]
+    pub trace: Option<PathBuf>,
 }
 
 /// What the program can do.

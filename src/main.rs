@@ -45,7 +45,7 @@ const GRACE: Duration = Duration::from_millis(300);
 fn main() -> ExitCode {
     let verb = match Cli::try_parse() {
         Ok(Cli { verb: Some(verb), .. }) => verb,
-        Ok(Cli { file, .. }) => return model(file.as_deref()),
+        Ok(Cli { file, trace, .. }) => return model(file.as_deref(), trace.as_deref()),
         Err(error) => return usage(&error),
     };
     let common = verb.common();
@@ -67,8 +67,8 @@ fn main() -> ExitCode {
 }
 
 /// Opens the window.
-fn model(file: Option<&Path>) -> ExitCode {
-    match app::run(file, app::sessions()) {
+fn model(file: Option<&Path>, trace: Option<&Path>) -> ExitCode {
+    match app::run(file, app::sessions(), trace) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             output::show_failure(&failure.to_string(), false);

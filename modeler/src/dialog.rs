@@ -249,7 +249,7 @@ fn left_behind(modeler: &mut Modeler, ui: &mut Ui, mut sessions: Vec<LeftBehind>
                 if let Some(reason) = &recovered.lost {
                     modeler.notices.warn(format!("The last steps could not be brought back: {reason}"));
                 }
-                modeler.put_recovered(Workbench::recovered(recovered, file));
+                modeler.put_recovered(recovered, file);
                 return None;
             }
             Err(error) => modeler.notices.warn(error.to_string()),

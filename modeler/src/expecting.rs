@@ -22,6 +22,8 @@ pub struct Asked {
     pub selected: Option<NodePath>,
     /// The depth of the sketch plane, mm, if somebody has moved it.
     pub depth: Option<f32>,
+    /// When the frame began that saw the end of the stroke.
+    pub since: Instant,
 }
 
 /// What comes to mind, the curve first.
@@ -57,6 +59,8 @@ pub struct Expectations {
     pub depth: f32,
     /// Why nothing is suggested that needs a closed outline.
     pub no_outline: Option<NoOutline>,
+    /// When the question was asked.
+    pub asked: Instant,
     /// How long it took, from question to answer.
     pub took: Duration,
 }
@@ -64,7 +68,7 @@ pub struct Expectations {
 /// Thinks about sketches.
 #[derive(Debug)]
 pub struct Thinker {
-    worker: Newest<(u64, Asked, Instant), Thought>,
+    worker: Newest<(u64, Asked), Thought>,
     asked: u64,
 }
 
@@ -73,8 +77,8 @@ impl Thinker {
     ///
     /// Errors: a system without a thread to spare.
     pub fn start(wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
-        let worker = Newest::start("sketch", wake, |(version, asked, since), answering| {
-            think(version, &asked, since, answering);
+        let worker = Newest::start("sketch", wake, |(version, asked), answering| {
+            think(version, &asked, answering);
         })?;
         Ok(Self { worker, asked: 0 })
     }
@@ -82,7 +86,7 @@ impl Thinker {
     /// Asks about a sketch; returns the question's version.
     pub fn ask(&mut self, asked: Asked) -> u64 {
         self.asked += 1;
-        self.worker.ask((self.asked, asked, Instant::now()));
+        self.worker.ask((self.asked, asked));
         self.asked
     }
 
@@ -111,8 +115,8 @@ impl Outlines for Solver {
     }
 }
 
-fn think(version: u64, asked: &Asked, since: Instant, answering: &Answering<Thought>) {
-    let Asked { sketch, view, root, selected, depth } = asked;
+fn think(version: u64, asked: &Asked, answering: &Answering<Thought>) {
+    let Asked { sketch, view, root, selected, depth, since } = asked;
     answering.give(Thought::Curves(curves(version, sketch, &view.placement(view.depth(Vec3::ZERO)))));
     if answering.cancel.is_cancelled() {
         return;
@@ -125,6 +129,7 @@ fn think(version: u64, asked: &Asked, since: Instant, answering: &Answering<Thou
         plane: found.plane,
         depth: found.depth,
         no_outline: found.no_outline,
+        asked: *since,
         took: since.elapsed(),
     }));
 }
@@ -161,6 +166,7 @@ mod tests {
             root: Workbench::empty_page().root,
             selected: None,
             depth: None,
+            since: Instant::now(),
         });
         let mut thoughts = Vec::new();
         let until = Instant::now() + Duration::from_secs(60);

@@ -28,6 +28,9 @@ struct Header {
     version: u32,
     /// The user's file, if the document has one.
     file: Option<PathBuf>,
+    /// Whether the scene holds work that is in no file, although nothing was done in this session yet.
+    #[serde(default)]
+    unsaved: bool,
 }
 
 impl Header {
@@ -74,10 +77,16 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Begins a session in a new folder in `sessions`, which is made if it is not there.
+    /// Begins a session in a new folder in `sessions`, which is made if it is not there. `unsaved` says that the scene
+    /// is worth bringing back even if nothing more is done.
     ///
     /// Errors: a folder that cannot be written; a scene without text.
-    pub fn begin(sessions: &Path, scene: &Scene, file: Option<&Path>) -> Result<Self, JournalError> {
+    pub fn begin(
+        sessions: &Path,
+        scene: &Scene,
+        file: Option<&Path>,
+        unsaved: bool,
+    ) -> Result<Self, JournalError> {
         let failed = |path: &Path, step| {
             let path = path.to_path_buf();
             move |error| JournalError::Io { path, step, error }
@@ -90,7 +99,7 @@ impl Journal {
         let mut journal = File::create_new(&path).map_err(failed(&path, "making it"))?;
         journal.try_lock().map_err(|e| failed(&path, "locking it")(e.into()))?;
         let file = file.map(|file| std::path::absolute(file).unwrap_or_else(|_| file.into()));
-        let header = Header { format: Header::FORMAT.into(), version: Header::VERSION, file };
+        let header = Header { format: Header::FORMAT.into(), version: Header::VERSION, file, unsaved };
         let line =
             serde_json::to_string(&header).map_err(|e| failed(&path, "writing its first line")(e.into()))?;
         append(&mut journal, &line).map_err(failed(&path, "writing its first line"))?;
@@ -168,7 +177,7 @@ impl LeftBehind {
         let mut lines = Lines::new(&journal).ok()?;
         let header = header(&folder, &lines.next()?.ok()?).ok()?;
         let steps = lines.map_while(Result::ok).count();
-        (steps > 0).then_some(Self { folder, journal, file: header.file, steps, last })
+        (steps > 0 || header.unsaved).then_some(Self { folder, journal, file: header.file, steps, last })
     }
 
     /// Does again all that was done. What was cut off in the middle of a line was never shown, and is dropped.

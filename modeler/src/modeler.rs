@@ -4,22 +4,25 @@ use crate::brought::newest;
 use crate::camera::{Camera, Side};
 use crate::desk::{Desk, Opened};
 use crate::dialog::{Dialog, Then};
-use crate::expecting::{Asked, Thinker};
+use crate::expecting::{Asked, Thinker, Thought};
 use crate::form::Form;
+use crate::journal::Recovered;
 use crate::node_box::NodeBox;
 use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
 use crate::panels;
 use crate::placing::{self, Motion};
 use crate::settings::Settings;
-use crate::solid::{Solid, SolidMaker};
+use crate::solid::{Asking, Solid, SolidMaker};
 use crate::stage::Stage;
+use crate::trace::{Trace, Wait};
 use crate::view::{self, ViewState};
 use crate::workbench::{EditError, Workbench};
 use blobtree::{Aabb, Command, JournalEntry, NodePath, NodeRef, Scene};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// The modeler, without a window.
 pub struct Modeler {
@@ -40,6 +43,12 @@ pub struct Modeler {
     selected_by_hand: bool,
     /// Who opens and writes files.
     pub desk: Box<dyn Desk>,
+    /// Where the user's waits are written down, if somewhere.
+    pub trace: Option<Trace>,
+    /// When the present frame began.
+    pub(crate) now: Instant,
+    /// Why the next solid is asked for.
+    asking: Asking,
     pub(crate) view: ViewState,
     /// The node that the pointer is over, in the tree or in the view.
     pub(crate) hovered: Option<NodePath>,
@@ -84,6 +93,9 @@ impl Modeler {
             dialog: None,
             selected_by_hand: false,
             desk,
+            trace: None,
+            now: Instant::now(),
+            asking: Asking::Other,
             view: ViewState::default(),
             hovered: None,
             boxes: Default::default(),
@@ -100,6 +112,7 @@ impl Modeler {
 
     /// Shows everything, and does what the user wants.
     pub fn ui(&mut self, ui: &mut egui::Ui, stage: &mut dyn Stage) {
+        self.begin_frame();
         self.hear();
         self.measure();
         crate::keys::heed(self, ui);
@@ -108,9 +121,31 @@ impl Modeler {
         if let Some(file) = self.waiting.take() {
             self.open(&file);
         }
+        let dropped = ui.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
+        if let Some(file) = dropped {
+            self.begin_open(file);
+        }
         crate::dialog::show(self, ui);
         self.notices.show(ui);
         self.ask();
+        let computing = !self.is_at_rest();
+        if let Some(trace) = &mut self.trace {
+            trace.frame(self.now, computing);
+        }
+    }
+
+    fn begin_frame(&mut self) {
+        self.now = Instant::now();
+        if let Some(error) = self.trace.as_mut().and_then(Trace::write) {
+            self.notices.warn(format!("The trace cannot be written: {error}"));
+        }
+    }
+
+    /// A wait of the user ends with the present frame.
+    pub(crate) fn ends(&mut self, wait: Wait, since: Instant, geometry: Option<std::time::Duration>) {
+        if let Some(trace) = &mut self.trace {
+            trace.ends(wait, since, geometry);
+        }
     }
 
     /// The solid as it is drawn.
@@ -128,6 +163,16 @@ impl Modeler {
     /// Takes in what the background threads have made.
     fn hear(&mut self) {
         if let Some(solid) = self.solids.ready() {
+            if !solid.is_fine {
+                let wait = match solid.asking {
+                    Asking::Choice => Some(Wait::ChoiceToSolid),
+                    Asking::Drag => Some(Wait::DragToSolid),
+                    Asking::Other => None,
+                };
+                if let Some(wait) = wait {
+                    self.ends(wait, solid.asked, Some(solid.took));
+                }
+            }
             let first = self.solid.as_ref().is_none_or(|old| old.bounds.is_empty()) && self.view.shows_new;
             if first && !solid.bounds.is_empty() {
                 self.camera.show(solid.bounds);
@@ -135,7 +180,11 @@ impl Modeler {
             }
             self.solid = Some(Arc::new(solid));
         }
-        for thought in self.thinker.thoughts() {
+        let thoughts: Vec<_> = self.thinker.thoughts().collect();
+        for thought in thoughts {
+            if let Thought::Expectations(found) = &thought {
+                self.ends(Wait::StrokeToSuggestions, found.asked, Some(found.took));
+            }
             self.pad.hear(thought);
         }
     }
@@ -172,7 +221,9 @@ impl Modeler {
         let root = &self.bench.shown().root;
         if self.asked.as_ref().is_none_or(|asked| !NodeRef::ptr_eq(asked, root)) {
             self.asked = Some(root.clone());
-            self.solids.ask(root);
+            let asking = if self.bench.is_dragged() { Asking::Drag } else { self.asking };
+            self.solids.ask(root, asking, self.now);
+            self.asking = Asking::Other;
         }
     }
 
@@ -185,14 +236,21 @@ impl Modeler {
                 root: self.bench.scene().root.clone(),
                 selected: self.bench.selected().cloned().filter(|_| self.selected_by_hand),
                 depth: self.pad.depth,
+                since: self.now,
             });
         }
     }
 
     /// Does something to the document, and tells the user if it cannot be done.
     pub fn act(&mut self, entry: JournalEntry) -> bool {
+        let was_protected = self.bench.is_protected();
         match self.bench.act(entry) {
-            Ok(_) => true,
+            Ok(_) => {
+                if self.bench.is_protected() && !was_protected {
+                    self.notices.tell("What you do is protected against a crash again.");
+                }
+                true
+            }
             Err(error) => {
                 let kept = matches!(error, EditError::Journal(_));
                 self.notices.warn(error.to_string());
@@ -238,6 +296,7 @@ impl Modeler {
         let Some(chosen) = chosen.cloned() else { return };
         let before = self.bench.scene().root.clone();
         if self.apply(chosen.command) {
+            self.asking = Asking::Choice;
             self.pad.clear();
             self.bench.select(newest(&before, &self.bench.scene().root));
             self.selected_by_hand = false;
@@ -298,15 +357,17 @@ impl Modeler {
         let Some(path) = self.bench.selected().cloned() else { return };
         let command = placing::command(&self.bench.scene().root, &path, motion);
         match command {
-            Some(command) if let_go => {
-                self.apply(command);
-            }
-            Some(command) => {
-                if let Err(error) = self.bench.drag(Some(command)) {
-                    self.notices.tell(error.to_string());
-                }
-            }
+            Some(command) => self.try_out(command, let_go),
             None => self.notices.tell("What is inside a twist, a taper or a bend cannot be moved by hand."),
+        }
+    }
+
+    /// Shows what a command would do, or does it.
+    pub(crate) fn try_out(&mut self, command: Command, is_final: bool) {
+        if is_final {
+            self.apply(command);
+        } else if let Err(error) = self.bench.drag(Some(command)) {
+            self.notices.tell(error.to_string());
         }
     }
 
@@ -335,14 +396,16 @@ impl Modeler {
     }
 
     /// Puts a document on the table that was brought back.
-    pub fn put_recovered(&mut self, bench: Workbench) {
+    pub fn put_recovered(&mut self, recovered: Recovered, file: Option<PathBuf>) {
+        let bench = Workbench::recovered(recovered, file, self.sessions.as_deref());
         std::mem::replace(&mut self.bench, bench).close();
         self.changed_document();
     }
 
     fn changed_document(&mut self) {
         self.pad.clear();
-        (self.form, self.hovered, self.solid) = (None, None, None);
+        (self.form, self.hovered, self.solid, self.asked) = (None, None, None, None);
+        self.solids.forget();
         self.view.shows_new = true;
         self.camera.show(Aabb::EMPTY);
     }

@@ -8,7 +8,8 @@ use std::thread;
 /// Trees are walked by recursion; as deep as scenes may be, this is plenty.
 const STACK_BYTES: usize = 32 << 20;
 
-/// A worker with one question at a time: a newer one takes the place of an older one, which is told to stop.
+/// A worker with one question at a time: a newer one takes the place of one that waits, and the work on an older one
+/// hears that it is no longer the newest.
 ///
 /// `Q` is a question, `A` an answer; a question may have several. The thread ends when this is dropped.
 #[derive(Debug)]
@@ -28,13 +29,16 @@ struct Waiting<Q> {
     question: Option<Q>,
     /// Stops the work on the question that was taken last.
     current: Cancel,
-    closed: bool,
+    /// Set when nobody can ask any more.
+    closed: Cancel,
 }
 
 /// How a worker gives its answers and hears that they are no longer wanted.
 pub struct Answering<A> {
     /// Set as soon as a newer question is there.
     pub cancel: Cancel,
+    /// Set when nobody waits for answers any more.
+    pub closed: Cancel,
     answers: Sender<A>,
     wake: Arc<dyn Fn() + Send + Sync>,
 }
@@ -42,7 +46,14 @@ pub struct Answering<A> {
 impl<A> Answering<A> {
     /// Gives an answer, unless a newer question is there.
     pub fn give(&self, answer: A) {
-        if !self.cancel.is_cancelled() && self.answers.send(answer).is_ok() {
+        if !self.cancel.is_cancelled() {
+            self.give_late(answer);
+        }
+    }
+
+    /// Gives an answer even if a newer question is there.
+    pub fn give_late(&self, answer: A) {
+        if self.answers.send(answer).is_ok() {
             (self.wake)();
         }
     }
@@ -57,13 +68,15 @@ impl<Q: Send + 'static, A: Send + 'static> Newest<Q, A> {
         wake: Arc<dyn Fn() + Send + Sync>,
         mut work: impl FnMut(Q, &Answering<A>) + Send + 'static,
     ) -> std::io::Result<Self> {
-        let waiting = Waiting { question: None, current: Cancel::new(), closed: false };
+        let waiting = Waiting { question: None, current: Cancel::new(), closed: Cancel::new() };
+        let closed = waiting.closed.clone();
         let desk = Arc::new(Desk { waiting: Mutex::new(waiting), arrived: Condvar::new() });
         let (sender, answers) = mpsc::channel();
         let own = desk.clone();
         thread::Builder::new().name(name.into()).stack_size(STACK_BYTES).spawn(move || {
             while let Some((question, cancel)) = own.next() {
-                work(question, &Answering { cancel, answers: sender.clone(), wake: wake.clone() });
+                let (closed, answers, wake) = (closed.clone(), sender.clone(), wake.clone());
+                work(question, &Answering { cancel, closed, answers, wake });
             }
         })?;
         Ok(Self { desk, answers })
@@ -88,7 +101,7 @@ impl<Q> Desk<Q> {
     fn next(&self) -> Option<(Q, Cancel)> {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
-            if waiting.closed {
+            if waiting.closed.is_cancelled() {
                 return None;
             }
             if let Some(question) = waiting.question.take() {
@@ -102,8 +115,8 @@ impl<Q> Desk<Q> {
 
 impl<Q, A> Drop for Newest<Q, A> {
     fn drop(&mut self) {
-        let mut waiting = self.desk.waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        waiting.closed = true;
+        let waiting = self.desk.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.closed.cancel();
         waiting.current.cancel();
         self.desk.arrived.notify_one();
     }

@@ -1,4 +1,7 @@
 //! The solid as it is drawn, made in the background: coarse at once, fine when nothing else is to do.
+//!
+//! A coarse solid is made to its end and shown even if the hand has moved on meanwhile: a drag whose every place stops
+//! the work on the one before would show nothing until the hand rests.
 
 use crate::newest::{Answering, Newest};
 use blobtree::{Aabb, BakeStore, Field, NodeRef, Palette, Tree, changed_region};
@@ -33,6 +36,17 @@ pub struct Corner {
     pub color: [u8; 4],
 }
 
+/// Why a solid is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asking {
+    /// The user has chosen what a sketch becomes.
+    Choice,
+    /// The user is dragging something.
+    Drag,
+    /// Anything else.
+    Other,
+}
+
 /// A solid ready to be drawn.
 #[derive(Debug)]
 pub struct Solid {
@@ -48,7 +62,11 @@ pub struct Solid {
     pub is_fine: bool,
     /// How many of its support-free nodes are shown as drawn.
     pub unconstrained: usize,
-    /// How long it took, from question to answer.
+    /// Why it was asked for.
+    pub asking: Asking,
+    /// When the frame began that asked for it.
+    pub asked: Instant,
+    /// How long the work on it took.
     pub took: Duration,
 }
 
@@ -57,6 +75,7 @@ pub struct Solid {
 struct Question {
     version: u64,
     root: NodeRef,
+    asking: Asking,
     asked: Instant,
 }
 
@@ -65,6 +84,8 @@ struct Question {
 pub struct SolidMaker {
     worker: Newest<Question, Solid>,
     asked: u64,
+    /// Solids before this one are of a document that is gone.
+    first: u64,
 }
 
 impl SolidMaker {
@@ -77,19 +98,24 @@ impl SolidMaker {
         let worker = Newest::start("solid", wake, move |question: Question, answering| {
             make(&mut levels, &mut extent, &question, answering);
         })?;
-        Ok(Self { worker, asked: 0 })
+        Ok(Self { worker, asked: 0, first: 0 })
     }
 
-    /// Asks for the solid of a tree; returns its version.
-    pub fn ask(&mut self, root: &NodeRef) -> u64 {
+    /// Asks for the solid of a tree, in a frame that began `now`; returns its version.
+    pub fn ask(&mut self, root: &NodeRef, asking: Asking, now: Instant) -> u64 {
         self.asked += 1;
-        self.worker.ask(Question { version: self.asked, root: root.clone(), asked: Instant::now() });
+        self.worker.ask(Question { version: self.asked, root: root.clone(), asking, asked: now });
         self.asked
     }
 
     /// The newest solid since the last look.
     pub fn ready(&mut self) -> Option<Solid> {
-        self.worker.answers().last()
+        self.worker.answers().last().filter(|solid| solid.version >= self.first)
+    }
+
+    /// Nothing that was asked for so far is wanted any more.
+    pub fn forget(&mut self) {
+        self.first = self.asked + 1;
     }
 
     /// Whether everything asked for so far is there in `shown` as fine as it gets.
@@ -106,19 +132,30 @@ struct Level {
 
 /// Makes one level after the other. `extent` is around the last solid, by which cells are chosen.
 fn make(levels: &mut [Level; 2], extent: &mut Aabb, question: &Question, answering: &Answering<Solid>) {
+    let mut began = Instant::now();
     let tree = Tree::new(&question.root);
     let palette = Palette::new(&question.root, &BakeStore::new());
     if extent.is_empty() {
         *extent = tree.support();
     }
     for (i, level) in levels.iter_mut().enumerate() {
-        if i > 0 && !rests(&answering.cancel) {
-            return;
+        let is_fine = i == 1;
+        if is_fine {
+            if !rests(&answering.cancel) {
+                return;
+            }
+            began = Instant::now();
         }
-        let Some(surface) = level.follow(&question.root, &tree, *extent, &answering.cancel) else { return };
-        let made = Solid { unconstrained: tree.unconstrained(), ..draw(surface, &palette, question, i == 1) };
-        *extent = made.bounds;
-        answering.give(made);
+        let stop = if is_fine { &answering.cancel } else { &answering.closed };
+        let Some(surface) = level.follow(&question.root, &tree, *extent, stop) else { return };
+        let drawn = draw(surface, &palette, question, is_fine);
+        *extent = drawn.bounds;
+        let made = Solid { unconstrained: tree.unconstrained(), took: began.elapsed(), ..drawn };
+        if is_fine {
+            answering.give(made);
+        } else {
+            answering.give_late(made);
+        }
     }
 }
 
@@ -192,7 +229,9 @@ fn draw(surface: &Surface, palette: &Palette, question: &Question, is_fine: bool
         cell: surface.cell().mm(),
         is_fine,
         unconstrained: 0,
-        took: question.asked.elapsed(),
+        asking: question.asking,
+        asked: question.asked,
+        took: Duration::ZERO,
     }
 }
 
@@ -217,13 +256,13 @@ mod tests {
     fn a_solid_that_follows_a_drag_is_the_one_that_is_made_anew() {
         let two = |x: f32| -> NodeRef { union([point([0., 0., 10.], 10.), point([x, 0., 10.], 8.)]).into() };
         let mut following = SolidMaker::start(Arc::new(|| ())).expect("a thread");
-        let first = following.ask(&two(12.0));
+        let first = following.ask(&two(12.0), Asking::Other, Instant::now());
         fine(&mut following, first);
         let after = two(13.0);
-        let version = following.ask(&after);
+        let version = following.ask(&after, Asking::Drag, Instant::now());
         let followed = fine(&mut following, version);
         let mut anew = SolidMaker::start(Arc::new(|| ())).expect("a thread");
-        let version = anew.ask(&after);
+        let version = anew.ask(&after, Asking::Other, Instant::now());
         let made = fine(&mut anew, version);
         // The cells were chosen for the solid before the drag.
         let ends = |solid: &Solid| [solid.bounds.min, solid.bounds.max];
@@ -233,9 +272,28 @@ mod tests {
     }
 
     #[test]
+    fn a_drag_that_never_rests_is_followed() {
+        let at = |x: f32| -> NodeRef { union([point([x, 0., 10.], 10.), point([0., 0., 30.], 8.)]).into() };
+        let mut maker = SolidMaker::start(Arc::new(|| ())).expect("a thread");
+        let until = Instant::now() + Duration::from_secs(60);
+        let mut shown = 0;
+        // A new place every millisecond, which is less than any solid takes.
+        for step in 0_u16.. {
+            assert!(Instant::now() < until, "{shown} solids in {step} steps");
+            maker.ask(&at(0.01 * f32::from(step)), Asking::Drag, Instant::now());
+            shown += usize::from(maker.ready().is_some());
+            if shown == 5 {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    #[test]
     fn nothing_is_drawn_of_an_empty_page() {
         let mut maker = SolidMaker::start(Arc::new(|| ())).expect("a thread");
-        let version = maker.ask(&crate::workbench::Workbench::empty_page().root);
+        let version =
+            maker.ask(&crate::workbench::Workbench::empty_page().root, Asking::Other, Instant::now());
         let solid = fine(&mut maker, version);
         assert!(solid.corners.is_empty() && solid.bounds.is_empty());
     }

@@ -14,6 +14,10 @@ pub struct Workbench {
     document: Document,
     /// Where everything done is written first; none if that is not possible or not wanted.
     journal: Option<Journal>,
+    /// The folder for journals, if one is wanted.
+    sessions: Option<PathBuf>,
+    /// A journal that could not be gone on with. What it holds is kept until another one holds more.
+    broken: Option<Journal>,
     /// The user's file, if there is one.
     file: Option<PathBuf>,
     /// The scene as it was opened or saved.
@@ -30,7 +34,7 @@ pub enum EditError {
     /// It cannot be carried out; nothing has changed.
     #[error("{0}")]
     Command(#[from] CommandError),
-    /// It was carried out, but cannot be kept: from now on a crash would lose what is not saved.
+    /// It was carried out, but cannot be kept: a crash would lose it. Whatever is done next tries again.
     #[error("what you do can no longer be protected against a crash ({0}); save your work")]
     Journal(Box<JournalError>),
 }
@@ -51,19 +55,38 @@ impl Workbench {
         sessions: Option<&Path>,
     ) -> Result<(Self, Option<JournalError>), SceneError> {
         let document = Document::new(scene.clone())?;
-        let journal = sessions.map(|sessions| Journal::begin(sessions, &scene, file.as_deref())).transpose();
+        let journal =
+            sessions.map(|sessions| Journal::begin(sessions, &scene, file.as_deref(), false)).transpose();
         let (journal, error) = match journal {
             Ok(journal) => (journal, None),
             Err(error) => (None, Some(error)),
         };
-        Ok((Self { document, journal, file, saved: scene, selected: None, preview: None }, error))
+        let bench = Self {
+            document,
+            journal,
+            sessions: sessions.map(Path::to_path_buf),
+            broken: None,
+            file,
+            saved: scene,
+            selected: None,
+            preview: None,
+        };
+        Ok((bench, error))
     }
 
-    /// A table with what was brought back from a session that was left behind; not saved.
-    pub fn recovered(recovered: Recovered, file: Option<PathBuf>) -> Self {
+    /// A table with what was brought back from a session that was left behind in `sessions`; not saved.
+    pub fn recovered(recovered: Recovered, file: Option<PathBuf>, sessions: Option<&Path>) -> Self {
         let Recovered { document, journal, .. } = recovered;
-        let saved = Scene::new(empty());
-        Self { document, journal: Some(journal), file, saved, selected: None, preview: None }
+        Self {
+            document,
+            journal: Some(journal),
+            sessions: sessions.map(Path::to_path_buf),
+            broken: None,
+            file,
+            saved: Scene::new(empty()),
+            selected: None,
+            preview: None,
+        }
     }
 
     /// The scene of an empty page: a union of nothing.
@@ -84,6 +107,11 @@ impl Workbench {
     /// The scene as it is to be shown: with what is being dragged.
     pub fn shown(&self) -> &Scene {
         self.preview.as_ref().unwrap_or(self.document.scene())
+    }
+
+    /// Whether something is being dragged.
+    pub fn is_dragged(&self) -> bool {
+        self.preview.is_some()
     }
 
     /// The user's file, if there is one.
@@ -131,10 +159,26 @@ impl Workbench {
         let selected = self.selected.take();
         self.select(selected);
         if let Err(error) = written {
-            self.journal = None;
-            return Err(error.into());
+            self.broken = self.journal.take();
+            self.protect().map_err(|_| error)?;
+        } else if self.journal.is_none() {
+            // The disk may still be full; the user knows.
+            let _ = self.protect();
         }
         Ok(change)
+    }
+
+    /// Begins another journal with the scene as it is, if one is wanted.
+    ///
+    /// Errors: a folder that cannot be written.
+    fn protect(&mut self) -> Result<(), JournalError> {
+        let Some(sessions) = &self.sessions else { return Ok(()) };
+        let file = self.file.as_deref();
+        self.journal = Some(Journal::begin(sessions, self.document.scene(), file, self.is_unsaved())?);
+        if let Some(broken) = self.broken.take() {
+            broken.end();
+        }
+        Ok(())
     }
 
     /// Carries out a command; see [`Self::act`].
@@ -163,7 +207,7 @@ impl Workbench {
 
     /// Takes the document off the table: it is saved, or not wanted.
     pub fn close(self) {
-        if let Some(journal) = self.journal {
+        for journal in self.journal.into_iter().chain(self.broken) {
             journal.end();
         }
     }

@@ -12,9 +12,11 @@ use modeler::Modeler;
 use modeler::dialog::Dialog;
 use modeler::journal::LeftBehind;
 use modeler::stage::NoStage;
+use modeler::trace::Trace;
 use stage::Card;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// The window's size at first, points.
 const SIZE: [f32; 2] = [1280.0, 800.0];
@@ -27,8 +29,12 @@ const LARGEST_BUFFER: u64 = 1 << 30;
 
 /// Opens the window, with a file on the table if one is named, and comes back when it is closed.
 ///
-/// Errors: no display or no graphics driver, with what to do; a system that cannot run threads.
-pub fn run(file: Option<&Path>, sessions: Option<PathBuf>) -> Result<(), Failure> {
+/// How long the user waits is written to `trace`, if it is given.
+///
+/// Errors: no display or no graphics driver, with what to do; a system that cannot run threads; a trace that cannot be
+/// written.
+pub fn run(file: Option<&Path>, sessions: Option<PathBuf>, trace: Option<&Path>) -> Result<(), Failure> {
+    let trace = trace.map(trace_to).transpose()?;
     let mut options = NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Trullo")
@@ -40,9 +46,15 @@ pub fn run(file: Option<&Path>, sessions: Option<PathBuf>) -> Result<(), Failure
     ask_for_large_buffers(&mut options);
     let file = file.map(Path::to_path_buf);
     let create = move |context: &CreationContext| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
-        Ok(Box::new(App::new(context, file.as_deref(), sessions)?))
+        Ok(Box::new(App::new(context, file.as_deref(), sessions, trace)?))
     };
     eframe::run_native("Trullo", options, Box::new(create)).map_err(|error| Failure::Input(advice(&error)))
+}
+
+/// Errors: a file that cannot be made.
+fn trace_to(path: &Path) -> Result<Trace, Failure> {
+    let file = std::fs::File::create(path).map_err(|e| Failure::of(path, e))?;
+    Ok(Trace::new(Box::new(file)))
 }
 
 /// Where sessions are kept: with the user's other state.
@@ -99,11 +111,13 @@ impl App {
         context: &CreationContext,
         file: Option<&Path>,
         sessions: Option<PathBuf>,
+        trace: Option<Trace>,
     ) -> std::io::Result<Self> {
         let ctx = context.egui_ctx.clone();
         let left = sessions.as_deref().map(LeftBehind::all).unwrap_or_default();
         let mut modeler =
             Modeler::new(Box::new(Files::default()), sessions, Arc::new(move || ctx.request_repaint()))?;
+        modeler.trace = trace;
         if let Some(file) = file {
             modeler.begin_with(file.to_path_buf());
         }
@@ -115,7 +129,10 @@ impl App {
 }
 
 impl eframe::App for App {
-    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        if let (Some(trace), Some(took)) = (&mut self.modeler.trace, frame.info().cpu_usage) {
+            trace.painted(Duration::from_secs_f32(took.max(0.0)));
+        }
         match &mut self.card {
             Some(card) => self.modeler.ui(ui, card),
             None => self.modeler.ui(ui, &mut NoStage),
@@ -130,11 +147,6 @@ impl eframe::App for App {
             if !self.modeler.quits() {
                 ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             }
-        }
-        let dropped: Vec<PathBuf> =
-            ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
-        for file in dropped {
-            self.modeler.begin_open(file);
         }
     }
 

@@ -5,6 +5,7 @@ use super::in_view;
 use crate::modeler::Modeler;
 use crate::pad::Around;
 use crate::settings::Tool;
+use crate::trace::Wait;
 use blobtree::{NodePath, Tree, pick};
 use egui::{Event, PointerButton, Response, Ui};
 use glam::Vec2;
@@ -121,6 +122,9 @@ fn drag(modeler: &mut Modeler, tool: Tool, by: egui::Vec2) {
 /// The pen is on the paper, or has just been lifted.
 fn pen(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     let events = ui.input(|input| input.events.clone());
+    if events.iter().any(|event| matches!(event, Event::PointerMoved(_))) {
+        modeler.ends(Wait::PenToStroke, modeler.now, None);
+    }
     for event in &events {
         match event {
             Event::PointerMoved(to) => modeler.pad.go_on(sample(in_view(*to, response), ui)),

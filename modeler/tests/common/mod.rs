@@ -1,5 +1,8 @@
 //! A modeler driven as a person would: by what is on the screen.
 
+// Each test file uses its own part of this.
+#![allow(dead_code)]
+
 use blobtree::{Drawing, MeshReference, Scene, SceneSources, Template};
 use egui::{Pos2, pos2};
 use egui_kittest::Harness;
