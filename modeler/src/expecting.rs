@@ -1,13 +1,18 @@
 //! What a sketch might become, thought out in the background while the pen is in the air.
 
 use crate::newest::{Answering, Newest};
-use blobtree::{Drawing, NodePath, NodeRef, SketchPlane, Template};
+use crate::thumbnail;
+use blobtree::{Document, Drawing, NodePath, NodeRef, Scene, SketchPlane, Template};
+use egui::ColorImage;
 use glam::{DVec2, Vec2, Vec3};
 use sketch::curve::{self, NoOutline};
 use sketch::stroke::{Placement, Sketch};
 use sketch::suggest::{Outlines, Request, Suggestion, View, suggest};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+
+/// The size of a picture of a suggestion, pixels: twice its size in points, for fine screens.
+pub const PICTURE: [usize; 2] = [112, 88];
 
 /// A sketch over a model, to be thought about.
 #[derive(Clone, Debug)]
@@ -33,6 +38,19 @@ pub enum Thought {
     Curves(Curves),
     /// What the sketch might become.
     Expectations(Expectations),
+    /// What one of these looks like.
+    Picture(Picture),
+}
+
+/// What the model looks like if a suggestion is taken.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Which question it answers.
+    pub version: u64,
+    /// The place of the suggestion.
+    pub suggestion: usize,
+    /// As the user sees the model.
+    pub image: Arc<ColorImage>,
 }
 
 /// The curves that a sketch means, where its strokes are, in points of the view.
@@ -53,6 +71,8 @@ pub struct Expectations {
     pub version: u64,
     /// The likeliest first.
     pub suggestions: Vec<Suggestion>,
+    /// What they look like, as far as that is known yet.
+    pub pictures: Vec<Option<Arc<ColorImage>>>,
     /// The sketch plane.
     pub plane: SketchPlane,
     /// Its depth before the eye, mm.
@@ -90,12 +110,18 @@ impl Thinker {
         self.asked
     }
 
+    /// Whether this answers the newest question.
+    pub fn is_newest(&self, expectations: &Expectations) -> bool {
+        expectations.version == self.asked
+    }
+
     /// What came to mind since the last look, on the newest question only.
     pub fn thoughts(&self) -> impl Iterator<Item = Thought> {
         let newest = self.asked;
         self.worker.answers().filter(move |thought| match thought {
             Thought::Curves(curves) => curves.version == newest,
             Thought::Expectations(expectations) => expectations.version == newest,
+            Thought::Picture(picture) => picture.version == newest,
         })
     }
 }
@@ -125,13 +151,30 @@ fn think(version: u64, asked: &Asked, answering: &Answering<Thought>) {
     let found = suggest(&request, &Solver);
     answering.give(Thought::Expectations(Expectations {
         version,
-        suggestions: found.suggestions,
+        pictures: vec![None; found.suggestions.len()],
+        suggestions: found.suggestions.clone(),
         plane: found.plane,
         depth: found.depth,
         no_outline: found.no_outline,
         asked: *since,
         took: since.elapsed(),
     }));
+    pictures(version, asked, &found.suggestions, answering);
+}
+
+/// Draws what the suggestions would make of the model.
+fn pictures(version: u64, asked: &Asked, suggestions: &[Suggestion], answering: &Answering<Thought>) {
+    let Ok(document) = Document::new(Scene::new(asked.root.clone())) else { return };
+    for (suggestion, suggested) in suggestions.iter().enumerate() {
+        let Ok(scene) = document.preview(suggested.command.clone()) else { continue };
+        if answering.cancel.is_cancelled() {
+            return;
+        }
+        let image = thumbnail::picture(&scene.root, &asked.view, PICTURE, &answering.cancel);
+        if let Some(image) = image.map(Arc::new) {
+            answering.give(Thought::Picture(Picture { version, suggestion, image }));
+        }
+    }
 }
 
 /// The curves of a sketch; where they come to lie in the model does not matter for them.
@@ -170,12 +213,13 @@ mod tests {
         });
         let mut thoughts = Vec::new();
         let until = Instant::now() + Duration::from_secs(60);
-        while thoughts.len() < 2 {
+        while thoughts.len() < 5 {
             assert!(Instant::now() < until, "nothing comes to mind");
             thoughts.extend(thinker.thoughts());
             std::thread::sleep(Duration::from_millis(2));
         }
-        let [Thought::Curves(curves), Thought::Expectations(expectations)] = &thoughts[..] else {
+        let [Thought::Curves(curves), Thought::Expectations(expectations), pictures @ ..] = &thoughts[..]
+        else {
             panic!("{thoughts:?}")
         };
         assert!(curves.closed.len() == 1 && curves.open.is_empty());
@@ -183,5 +227,10 @@ mod tests {
         let names: Vec<&str> =
             expectations.suggestions.iter().map(|suggestion| suggestion.icon.id()).collect();
         assert_eq!(names, ["inflate", "sweep", "revolve"]);
+        let of = pictures.iter().filter_map(|thought| match thought {
+            Thought::Picture(picture) => Some(picture.suggestion),
+            _ => None,
+        });
+        assert_eq!(of.collect::<Vec<_>>(), [0, 1, 2]);
     }
 }

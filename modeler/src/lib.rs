@@ -27,6 +27,7 @@ pub mod placing;
 pub mod settings;
 pub mod solid;
 pub mod stage;
+pub mod thumbnail;
 pub mod trace;
 mod view;
 pub mod workbench;

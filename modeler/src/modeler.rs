@@ -155,9 +155,15 @@ impl Modeler {
 
     /// Whether all that is shown is as fine as it gets, and nothing is being thought about.
     pub fn is_at_rest(&self) -> bool {
-        let sketched = self.pad.sketch().is_empty() || self.pad.expectations.is_some();
+        let is_newest = |found| self.thinker.is_newest(found);
+        let sketched = self.pad.sketch().is_empty() || self.pad.expectations.as_ref().is_some_and(is_newest);
         let asked = self.asked.as_ref().is_some_and(|root| NodeRef::ptr_eq(root, &self.bench.shown().root));
         sketched && asked && self.solids.is_done(self.solid.as_deref())
+    }
+
+    /// The knobs in the view: what they say, and where they are, in points of the view.
+    pub fn knobs(&self) -> Vec<(String, glam::Vec2)> {
+        view::knobs(self)
     }
 
     /// Takes in what the background threads have made.

@@ -115,12 +115,13 @@ impl Pad {
         let stroked = match gesture {
             Some(Gesture::Press(button)) => return Stroked::Pressed(button),
             Some(Gesture::Remove) => return Stroked::Removed,
-            Some(Gesture::SelectParent) => return Stroked::ParentSelected,
+            // Without anything selected it is a line, such as a string of a harp.
+            Some(Gesture::SelectParent) if around.selected.is_some() => return Stroked::ParentSelected,
             Some(Gesture::Undo) if self.sketch.is_empty() => return Stroked::UndoneStep,
             Some(Gesture::Undo) => self.sketch.undo_last_stroke(),
             Some(Gesture::Erase(area)) => self.with(view, seen, |sketch| sketch.erase(&area)),
             Some(Gesture::Smooth(polygon)) => self.with(view, seen, |sketch| sketch.smooth(&polygon) > 0),
-            None => self.with(view, seen, |sketch| {
+            Some(Gesture::SelectParent) | None => self.with(view, seen, |sketch| {
                 let old = sketch.clone();
                 sketch.add(&stroke);
                 *sketch != old
@@ -161,6 +162,12 @@ impl Pad {
         match thought {
             Thought::Curves(curves) => self.curves = Some(curves),
             Thought::Expectations(expectations) => self.expectations = Some(expectations),
+            Thought::Picture(picture) => {
+                let found = self.expectations.as_mut().filter(|found| found.version == picture.version);
+                if let Some(place) = found.and_then(|found| found.pictures.get_mut(picture.suggestion)) {
+                    *place = Some(picture.image);
+                }
+            }
         }
     }
 

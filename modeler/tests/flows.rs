@@ -137,6 +137,115 @@ fn the_parameters_of_what_is_selected_can_be_typed() {
     assert_eq!(sweep.length, 25.0);
 }
 
+/// Drags with the pen from one place to another, in steps, while the model follows.
+fn drag(screen: &mut Screen, from: egui::Pos2, by: egui::Vec2) {
+    draw(screen, (0..=10).map(|i| from + by * (i as f32 / 10.0)));
+}
+
+#[test]
+fn the_knob_beside_a_part_makes_it_thicker() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 60.0));
+    press(&mut screen, "Make thick");
+    let thickness = |screen: &Screen| {
+        let node = screen.state().bench.selected_node().expect("selected").clone();
+        let Shape::Primitive(blobtree::Primitive::LinearSweep(sweep)) = &node.shape else {
+            panic!("{node:?}")
+        };
+        sweep.length
+    };
+    let before = thickness(&screen);
+    // Its direction points to the eye, so the knob stands below, to the left of the part's middle.
+    let knobs = screen.state().knobs();
+    let (name, place) = knobs.first().expect("a knob").clone();
+    assert!(name.starts_with("Thickness"), "{name}");
+    let knob = screen.get_by_label("Model view").rect().min + vec2(place.x, place.y);
+    drag(&mut screen, knob, vec2(-30.0, 30.0));
+    let after = thickness(&screen);
+    assert!(after > before + 1.0, "{before} to {after}");
+    press(&mut screen, "Undo");
+    assert_eq!(thickness(&screen), before);
+}
+
+#[test]
+fn the_knob_below_a_blend_makes_it_sharper() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 100.0));
+    press(&mut screen, "Inflate");
+    draw(&mut screen, circle(at + vec2(100.0, 0.0), 50.0));
+    press(&mut screen, "Grow");
+    let sharpness = |screen: &Screen| {
+        let mut nodes = vec![screen.state().bench.scene().root.clone()];
+        while let Some(node) = nodes.pop() {
+            if let Shape::Operator(Operator::Blend(sharpness), _) = &node.shape {
+                return sharpness.get();
+            }
+            nodes.extend(node.children().iter().cloned());
+        }
+        panic!("no blend")
+    };
+    let before = sharpness(&screen);
+    let knobs = screen.state().knobs();
+    let (_, place) = knobs.iter().find(|(name, _)| name.starts_with("Sharpness")).expect("a knob").clone();
+    let knob = screen.get_by_label("Model view").rect().min + vec2(place.x, place.y);
+    drag(&mut screen, knob, vec2(80.0, 0.0));
+    assert!((sharpness(&screen) / before - 2.0).abs() < 0.05, "{before} to {}", sharpness(&screen));
+}
+
+#[test]
+fn the_plane_of_a_sketch_is_moved_away_before_it_becomes_a_solid() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 60.0));
+    let depth = screen.state().pad.expectations.as_ref().expect("suggestions").depth;
+    let (name, place) = screen.state().knobs().first().expect("a knob").clone();
+    assert_eq!(name, "Nearer or farther");
+    let knob = screen.get_by_label("Model view").rect().min + vec2(place.x, place.y);
+    drag(&mut screen, knob, vec2(0.0, -50.0));
+    let moved = screen.state().pad.expectations.as_ref().expect("suggestions").depth;
+    assert!(moved > depth + 1.0, "{depth} to {moved}");
+    press(&mut screen, "Inflate");
+    let solid = screen.state().solid().expect("a solid").bounds.center();
+    let forward = screen.state().camera.view(glam::Vec2::splat(100.0)).forward;
+    assert!((solid.dot(forward) - (moved - depth)).abs() < 0.1 * (moved - depth) + 1.0, "{solid}");
+}
+
+#[test]
+fn a_tree_of_a_hundred_levels_shows_and_can_be_worked_on() {
+    let mut screen = screen(None);
+    let mut node: blobtree::Node = blobtree::build::point([0., 0., 5.], 5.);
+    for level in 0..100_u8 {
+        let next = blobtree::build::point([f32::from(level), 0., 5.], 4.);
+        node = blobtree::build::blend([blobtree::build::union([node]), blobtree::build::union([next])]);
+    }
+    screen.state_mut().put(blobtree::Scene::new(node), None);
+    settle(&mut screen);
+    assert!(screen.get_all_by_label("Blended").count() > 5);
+    screen.state_mut().select(Some(NodePath(vec![0; 199])));
+    settle(&mut screen);
+    assert!(screen.state().bench.selected_node().is_some());
+}
+
+#[test]
+fn every_suggestion_has_a_picture_of_what_it_makes() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 90.0));
+    let until = std::time::Instant::now() + std::time::Duration::from_secs(60);
+    let missing = |screen: &Screen| {
+        let found = screen.state().pad.expectations.as_ref().expect("suggestions");
+        found.pictures.iter().filter(|picture| picture.is_none()).count()
+    };
+    while missing(&screen) > 0 {
+        assert!(std::time::Instant::now() < until, "{} pictures are missing", missing(&screen));
+        screen.step();
+    }
+    let found = screen.state().pad.expectations.as_ref().expect("suggestions");
+    assert_eq!(found.pictures.len(), 3);
+}
+
 #[test]
 fn how_parts_are_combined_can_be_changed_in_place() {
     let mut screen = screen(None);

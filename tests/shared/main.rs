@@ -8,6 +8,7 @@ mod common;
 mod doodles;
 mod models;
 mod peer_scenes;
+mod pen;
 mod print_check;
 mod slicer;
 mod support_free;

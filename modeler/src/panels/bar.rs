@@ -4,7 +4,7 @@ use crate::dialog::{Dialog, Then};
 use crate::modeler::Modeler;
 use crate::settings::{Habit, Tool};
 use crate::stage::Look;
-use egui::{Button, Ui, Widget as _, global_theme_preference_buttons};
+use egui::{Button, ThemePreference, Ui, Widget as _};
 
 /// Shows it.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
@@ -100,7 +100,18 @@ fn view(modeler: &mut Modeler, ui: &mut Ui) {
             ui.radio_value(&mut settings.habit, habit, habit.name());
         }
     });
-    ui.menu_button("Light and dark", global_theme_preference_buttons);
+    ui.menu_button("Light and dark", |ui| {
+        let mut theme = ui.ctx().options(|options| options.theme_preference);
+        for (name, choice) in [
+            ("As the system", ThemePreference::System),
+            ("Light", ThemePreference::Light),
+            ("Dark", ThemePreference::Dark),
+        ] {
+            if ui.radio_value(&mut theme, choice, name).clicked() {
+                ui.ctx().set_theme(choice);
+            }
+        }
+    });
     let mut zoom = ui.ctx().zoom_factor();
     let label = ui.label("Size of everything");
     if egui::DragValue::new(&mut zoom).range(0.6..=2.5).speed(0.01).ui(ui).labelled_by(label.id).changed() {

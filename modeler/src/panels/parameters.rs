@@ -197,14 +197,7 @@ fn grant(modeler: &mut Modeler, wish: Wish) {
         form.with(field, wish.value, modeler.bench.shown(), sources)
     };
     match command {
-        Ok(command) if wish.is_final => {
-            modeler.apply(command);
-        }
-        Ok(command) => {
-            if let Err(error) = modeler.bench.drag(Some(command)) {
-                modeler.notices.tell(error.to_string());
-            }
-        }
+        Ok(command) => modeler.try_out(command, wish.is_final),
         Err(error) => modeler.notices.tell(error.to_string()),
     }
 }

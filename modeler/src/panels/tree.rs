@@ -7,6 +7,9 @@ use egui::{Color32, Id, Response, RichText, ScrollArea, Sense, Ui, collapsing_he
 /// Nodes below which branches begin closed.
 const OPEN_UP_TO: usize = 40;
 
+/// How far lines are indented at most, in levels.
+const DEEPEST: usize = 12;
+
 /// What is done with a node that is dragged onto another.
 #[derive(Clone, Debug, PartialEq)]
 struct Dragged(NodePath);
@@ -28,7 +31,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         if root.children().is_empty() && matches!(root.shape, Shape::Operator(..)) {
             ui.weak("Nothing yet. Draw a closed outline in the middle.");
         } else {
-            branch(modeler, ui, &root, NodePath::default(), &mut done);
+            lines(modeler, ui, &root, &mut done);
         }
     });
     modeler.hovered = done.hovered;
@@ -40,22 +43,35 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     }
 }
 
-fn branch(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: NodePath, done: &mut Done) {
-    if node.children().is_empty() {
-        ui.horizontal(|ui| {
-            ui.add_space(ui.spacing().indent);
-            row(modeler, ui, node, &path, done);
-        });
-        return;
-    }
-    let id = Id::unique("branch").with(&path);
-    let open = path.0.len() < 2 || node.children().len() <= OPEN_UP_TO && path.0.len() < 5;
-    let state = collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, open);
-    state.show_header(ui, |ui| row(modeler, ui, node, &path, done)).body(|ui| {
-        for (index, child) in node.children().iter().enumerate() {
-            branch(modeler, ui, child, path.child(index), done);
+/// All nodes that show, line by line. Trees may be deep, and lines in lines in lines would need much of the stack.
+fn lines(modeler: &Modeler, ui: &mut Ui, root: &NodeRef, done: &mut Done) {
+    let mut waiting = vec![(root.clone(), NodePath::default())];
+    while let Some((node, path)) = waiting.pop() {
+        let is_open = ui.horizontal(|ui| line(modeler, ui, &node, &path, done)).inner;
+        if is_open {
+            let children = node.children().iter().enumerate().rev();
+            waiting.extend(children.map(|(index, child)| (child.clone(), path.child(index))));
         }
-    });
+    }
+}
+
+/// One node; whether those below it show.
+fn line(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &mut Done) -> bool {
+    let indent = ui.spacing().indent;
+    ui.add_space(indent * path.0.len().min(DEEPEST) as f32);
+    if node.children().is_empty() {
+        ui.add_space(indent);
+        row(modeler, ui, node, path, done);
+        return false;
+    }
+    let id = Id::unique("branch").with(path);
+    let open = path.0.len() < 2 || node.children().len() <= OPEN_UP_TO && path.0.len() < DEEPEST;
+    let mut state = collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, open);
+    state.show_toggle_button(ui, collapsing_header::paint_default_icon);
+    let is_open = state.is_open();
+    state.store(ui.ctx());
+    row(modeler, ui, node, path, done);
+    is_open
 }
 
 fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &mut Done) {

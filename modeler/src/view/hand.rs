@@ -2,6 +2,7 @@
 
 use super::handles::Handle;
 use super::in_view;
+use super::knobs::{self, Knob, Turns};
 use crate::modeler::Modeler;
 use crate::pad::Around;
 use crate::settings::Tool;
@@ -32,6 +33,8 @@ pub enum Hold {
     View(Tool),
     /// A handle of the selected node, taken at a place of the view.
     Handle(Handle, Vec2),
+    /// A knob, taken at a place of the view, and its number then.
+    Knob(Turns, Vec2, f32),
 }
 
 /// Does what the hand does.
@@ -44,6 +47,7 @@ pub fn heed(modeler: &mut Modeler, ui: &Ui, response: &Response) {
         Hold::Pen => pen(modeler, ui, response),
         Hold::View(tool) => drag(modeler, tool, ui.input(|input| input.pointer.delta())),
         Hold::Handle(handle, from) => handle_dragged(modeler, ui, response, handle, from),
+        Hold::Knob(turns, from, start) => knob_dragged(modeler, ui, response, turns, from, start),
     }
     if !ui.input(|input| input.pointer.any_down()) {
         modeler.view.hold = Hold::Nothing;
@@ -101,13 +105,12 @@ fn press(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     modeler.view.hold = match modeler.settings.tool {
         _ if space => Hold::View(Tool::Turn),
         tool @ (Tool::Turn | Tool::Pan) => Hold::View(tool),
-        tool => match Handle::at(modeler, at).filter(|_| tool == Tool::Draw) {
-            Some(handle) => Hold::Handle(handle, at),
-            None => {
-                modeler.pad.begin(sample(at, ui), tool == Tool::Erase);
-                Hold::Pen
-            }
-        },
+        Tool::Draw if let Some(knob) = Knob::at(modeler, at) => Hold::Knob(knob.turns, at, knob.value),
+        Tool::Draw if let Some(handle) = Handle::at(modeler, at) => Hold::Handle(handle, at),
+        tool => {
+            modeler.pad.begin(sample(at, ui), tool == Tool::Erase);
+            Hold::Pen
+        }
     };
 }
 
@@ -204,6 +207,23 @@ fn handle_dragged(modeler: &mut Modeler, ui: &Ui, response: &Response, handle: H
     let at = in_view(at, response);
     if let Some(motion) = handle.motion(modeler, from, at).filter(|_| from.distance(at) > 0.0) {
         modeler.place(motion, let_go);
+    }
+}
+
+/// A knob follows the hand.
+fn knob_dragged(modeler: &mut Modeler, ui: &Ui, response: &Response, turns: Turns, from: Vec2, start: f32) {
+    let Some(at) = ui.input(|input| input.pointer.latest_pos()) else { return };
+    let let_go = ui.input(|input| input.pointer.primary_released());
+    let by = in_view(at, response) - from;
+    let Some(knob) = Knob::all(modeler).into_iter().find(|knob| knob.turns == turns) else { return };
+    let value = knob.dragged(start, by);
+    if turns == Turns::Depth {
+        if modeler.pad.depth != Some(value) && value.is_finite() {
+            modeler.pad.depth = Some(value);
+            modeler.think();
+        }
+    } else if let Some(command) = knobs::command(modeler, turns, value) {
+        modeler.try_out(command, let_go && by != Vec2::ZERO);
     }
 }
 

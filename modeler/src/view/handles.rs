@@ -48,8 +48,11 @@ pub struct Handles {
 }
 
 impl Handles {
-    /// Those of the selected node, as it is shown.
+    /// Those of the selected node, as it is shown; none while a sketch is in the air.
     pub fn of(modeler: &Modeler) -> Option<Self> {
+        if !modeler.pad.is_empty() {
+            return None;
+        }
         let middle = modeler.selected_box()?.center();
         let view = modeler.camera.view(modeler.view.screen);
         view.screen_from_model(middle)?;

@@ -2,7 +2,9 @@
 
 mod hand;
 mod handles;
+mod knobs;
 mod overlay;
+mod pictures;
 
 use crate::ground;
 use crate::modeler::Modeler;
@@ -12,7 +14,7 @@ use glam::Vec2;
 use sketch::gesture::Button;
 
 /// What the view remembers from frame to frame.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct ViewState {
     /// Its size, points.
     pub screen: Vec2,
@@ -22,6 +24,8 @@ pub struct ViewState {
     pub quits: bool,
     /// The suggestions' buttons of the last frame, in points of the view.
     pub(super) buttons: Vec<Button>,
+    /// Pictures of the suggestions, as the screen has them.
+    pub(super) pictures: pictures::Pictures,
     /// What the hand holds.
     pub(super) hold: hand::Hold,
     /// The last tap: where, and which of the nodes there it selected.
@@ -39,6 +43,11 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui, stage: &mut dyn Stage) {
         picture(modeler, ui, rect, stage);
         overlay::show(modeler, ui, &response);
     });
+}
+
+/// The knobs: what they say, and where they are.
+pub fn knobs(modeler: &Modeler) -> Vec<(String, Vec2)> {
+    knobs::Knob::all(modeler).into_iter().map(|knob| (knob.text(), knob.at)).collect()
 }
 
 /// A place of the view on the screen.

@@ -2,12 +2,17 @@
 
 use super::hand::Hold;
 use super::handles::{ALL, Handle, Handles};
+use super::knobs::{self, Knob, Turns};
 use super::{in_view, on_screen};
 use crate::camera::Side;
+use crate::expecting;
 use crate::modeler::Modeler;
 use blobtree::Aabb;
-use egui::{Area, Button, Color32, Id, Order, Painter, Pos2, Response, RichText, Stroke, Ui, vec2};
-use glam::Vec2;
+use egui::{
+    Align2, Area, Button, Color32, CornerRadius, FontId, Id, Order, Painter, Pos2, Rect, Response, RichText,
+    Stroke, TextureHandle, Ui, vec2,
+};
+use glam::{Vec2, Vec3};
 use sketch::suggest::{Suggestion, View};
 
 /// Strokes as they are drawn.
@@ -17,7 +22,13 @@ const STROKE: Color32 = Color32::from_rgba_premultiplied(30, 60, 130, 130);
 const ERASED: Color32 = Color32::from_rgba_premultiplied(120, 40, 40, 120);
 
 /// The size of a suggestion's button, points: large enough to be struck through.
-const BUTTON: egui::Vec2 = vec2(132.0, 34.0);
+const BUTTON: egui::Vec2 = vec2(168.0, 50.0);
+
+/// The size of the picture in it, points.
+const PICTURE: egui::Vec2 = vec2(0.5 * expecting::PICTURE[0] as f32, 0.5 * expecting::PICTURE[1] as f32);
+
+/// How far boxes around parts go beyond the model, as a share of its longest side.
+const BEYOND: f32 = 0.15;
 
 /// Between a sketch and its suggestions, points.
 const GAP: f32 = 18.0;
@@ -28,13 +39,27 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
     let view = modeler.camera.view(modeler.view.screen);
     let selected = modeler.selected_box().map(|bounds| (bounds, Color32::from_rgb(240, 170, 40)));
     let hovered = modeler.hovered_box().map(|bounds| (bounds, Color32::from_rgb(90, 150, 230)));
-    for (bounds, color) in [selected, hovered].into_iter().flatten() {
-        paint_box(&painter, &bounds, &view, response, color);
+    // A sketch in the air has the view for itself.
+    if modeler.pad.is_empty() {
+        for (bounds, color) in [selected, hovered].into_iter().flatten() {
+            paint_box(&painter, &within(&bounds, &modeler.bounds()), &view, response, color);
+        }
+        paint_handles(modeler, &painter, response);
     }
-    paint_handles(modeler, &painter, response);
+    paint_ghost_plane(modeler, &painter, &view, response);
+    paint_knobs(modeler, &painter, response);
     paint_sketch(modeler, &painter, &view, response);
     suggestions(modeler, ui, &view, response);
     view_buttons(modeler, ui, response);
+}
+
+/// A box without what lies far outside the model: what cuts goes far beyond it.
+fn within(bounds: &Aabb, model: &Aabb) -> Aabb {
+    if model.is_empty() {
+        return *bounds;
+    }
+    let beyond = Vec3::splat(BEYOND * model.size().max_element());
+    Aabb { min: bounds.min.max(model.min - beyond), max: bounds.max.min(model.max + beyond) }
 }
 
 fn paint_box(painter: &Painter, bounds: &Aabb, view: &View, response: &Response, color: Color32) {
@@ -66,7 +91,7 @@ fn paint_handles(modeler: &Modeler, painter: &Painter, response: &Response) {
         match (handle, &line[..]) {
             (Handle::Arrow(_), [from, to]) => painter.arrow(*from, *to - *from, stroke),
             (Handle::Square, [at]) => {
-                let square = egui::Rect::from_center_size(*at, vec2(14.0, 14.0));
+                let square = Rect::from_center_size(*at, vec2(14.0, 14.0));
                 painter.rect_filled(square, 2.0, handle.color());
             }
             (Handle::Middle, [at]) => {
@@ -76,6 +101,46 @@ fn paint_handles(modeler: &Modeler, painter: &Painter, response: &Response) {
                 painter.line(many.to_vec(), Stroke::new(width, handle.color().gamma_multiply(0.8)));
             }
         }
+    }
+}
+
+/// The plane in which the sketch lies, as a pane of glass.
+fn paint_ghost_plane(modeler: &Modeler, painter: &Painter, view: &View, response: &Response) {
+    let Some(corners) = knobs::ghost_plane(modeler) else { return };
+    let seen = corners.map(|corner| view.screen_from_model(corner).map(|at| on_screen(at, response)));
+    let [Some(a), Some(b), Some(c), Some(d)] = seen else { return };
+    let glass = Color32::from_rgba_unmultiplied(70, 130, 220, 18);
+    let edge = Stroke::new(1.0, Color32::from_rgba_unmultiplied(70, 130, 220, 110));
+    painter.add(egui::Shape::convex_polygon(vec![a, b, c, d], glass, edge));
+}
+
+fn paint_knobs(modeler: &Modeler, painter: &Painter, response: &Response) {
+    let held = match modeler.view.hold {
+        Hold::Knob(turns, ..) => Some(turns),
+        Hold::Nothing => {
+            let over = response.hover_pos().and_then(|at| Knob::at(modeler, in_view(at, response)));
+            over.map(|knob| knob.turns)
+        }
+        // Nothing is in the way of a pen that draws.
+        _ => return,
+    };
+    let dark = painter.ctx().global_style().visuals.dark_mode;
+    let ink = if dark { Color32::from_gray(230) } else { Color32::from_gray(40) };
+    for knob in Knob::all(modeler) {
+        let color = Color32::from_rgb(20, 150, 140);
+        let (at, from) = (on_screen(knob.at, response), on_screen(knob.from, response));
+        painter.add(egui::Shape::dashed_line(&[from, at], Stroke::new(1.0, color), 4.0, 4.0));
+        let grows = vec2(knob.grows.x, knob.grows.y);
+        let radius = if held == Some(knob.turns) { 10.0 } else { 8.0 };
+        painter.circle(at, radius, color, Stroke::new(1.5, Color32::WHITE));
+        for side in [-1.0, 1.0] {
+            painter.arrow(at + side * (radius + 2.0) * grows, side * 9.0 * grows, Stroke::new(2.0, color));
+        }
+        if knob.turns == Turns::Depth && held.is_none() {
+            continue;
+        }
+        let beside = at + vec2(0.0, radius + 4.0 + 10.0 * grows.y.abs());
+        painter.text(beside, Align2::CENTER_TOP, knob.text(), FontId::proportional(13.0), ink);
     }
 }
 
@@ -146,7 +211,9 @@ fn suggestions(modeler: &mut Modeler, ui: &mut Ui, view: &View, response: &Respo
             ui.label(RichText::new(reason.to_string()).background_color(ui.visuals().window_fill));
         }
         for (i, suggestion) in expectations.suggestions.iter().enumerate() {
-            let button = suggestion_button(ui, suggestion);
+            let image = expectations.pictures.get(i).and_then(Option::as_ref);
+            let picture = modeler.view.pictures.get(ui.ctx(), expectations.version, i, image);
+            let button = suggestion_button(ui, suggestion, picture.as_ref());
             let rect = button.rect.translate(-response.rect.min.to_vec2());
             modeler.view.buttons.push(sketch::gesture::Button {
                 min: Vec2::new(rect.min.x, rect.min.y),
@@ -162,21 +229,31 @@ fn suggestions(modeler: &mut Modeler, ui: &mut Ui, view: &View, response: &Respo
     }
 }
 
-fn suggestion_button(ui: &mut Ui, suggestion: &Suggestion) -> Response {
+/// A card: its colour at the edge, the picture of what would come of it, and its name.
+fn suggestion_button(ui: &mut Ui, suggestion: &Suggestion, picture: Option<&TextureHandle>) -> Response {
     let [r, g, b] = suggestion.color.0;
-    let fill = Color32::from_rgb(r, g, b);
-    // Dark letters on the light green, light ones on blue and red.
-    let ink =
-        if u32::from(r) + 2 * u32::from(g) + u32::from(b) > 500 { Color32::BLACK } else { Color32::WHITE };
-    let text = RichText::new(suggestion.name).color(ink).size(15.0);
-    ui.add(Button::new(text).fill(fill).min_size(BUTTON)).on_hover_text(suggestion.sentence)
+    let edge = Color32::from_rgb(r, g, b);
+    let button = Button::new("").fill(ui.visuals().window_fill).min_size(BUTTON);
+    let response = ui.add(button.stroke(Stroke::new(1.5, edge))).on_hover_text(suggestion.sentence);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, suggestion.name));
+    let (painter, rect) = (ui.painter(), response.rect);
+    let side = Rect::from_min_size(rect.min, vec2(7.0, rect.height()));
+    painter.rect_filled(side, CornerRadius { nw: 3, sw: 3, ne: 0, se: 0 }, edge);
+    let frame = Rect::from_center_size(rect.left_center() + vec2(12.0 + 0.5 * PICTURE.x, 0.0), PICTURE);
+    if let Some(picture) = picture {
+        let whole = Rect::from_min_max(Pos2::ZERO, egui::pos2(1.0, 1.0));
+        painter.image(picture.id(), frame, whole, Color32::WHITE);
+    }
+    let at = egui::pos2(frame.right() + 8.0, rect.center().y);
+    let color = ui.visuals().strong_text_color();
+    painter.text(at, Align2::LEFT_CENTER, suggestion.name, FontId::proportional(15.0), color);
+    response
 }
 
 /// The named views, in the corner.
 fn view_buttons(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
     let corner = response.rect.right_top() + vec2(-8.0, 8.0);
-    let area =
-        Area::new(Id::unique("views")).order(Order::Middle).pivot(egui::Align2::RIGHT_TOP).fixed_pos(corner);
+    let area = Area::new(Id::unique("views")).order(Order::Middle).pivot(Align2::RIGHT_TOP).fixed_pos(corner);
     area.show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).inner_margin(4.0).show(ui, |ui| {
             egui::Grid::new("sides").spacing([3.0, 3.0]).show(ui, |ui| {
