@@ -10,6 +10,9 @@ use std::sync::Arc;
 pub enum Opened {
     /// A scene, to be worked on; with what was noticed.
     Scene(Scene, Vec<String>),
+    /// A mesh as the only part of a scene that is in no file yet: the scene, the file beside the mesh that it may be
+    /// saved as, and what was noticed.
+    Mesh(Scene, PathBuf, Vec<String>),
     /// A drawing: strokes in pixels.
     Drawing(Sketch),
 }

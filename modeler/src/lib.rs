@@ -17,6 +17,8 @@ pub mod form;
 mod ground;
 pub mod journal;
 pub mod keys;
+pub mod lesson;
+mod meshes;
 mod modeler;
 mod newest;
 mod node_box;

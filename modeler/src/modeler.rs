@@ -7,6 +7,7 @@ use crate::dialog::{Dialog, Then};
 use crate::expecting::{Asked, Thinker, Thought};
 use crate::form::Form;
 use crate::journal::Recovered;
+use crate::lesson::Lesson;
 use crate::node_box::NodeBox;
 use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
@@ -38,6 +39,8 @@ pub struct Modeler {
     pub notices: Notices,
     /// What is asked of the user.
     pub dialog: Option<Dialog>,
+    /// What the user is being taught.
+    pub lesson: Option<Lesson>,
     /// Whether the user has selected what is selected. What is new is selected, too, but sketches mean the whole model
     /// then.
     selected_by_hand: bool,
@@ -91,6 +94,7 @@ impl Modeler {
             settings: Settings::default(),
             notices,
             dialog: None,
+            lesson: None,
             selected_by_hand: false,
             desk,
             trace: None,
@@ -424,6 +428,11 @@ impl Modeler {
                 self.put(scene, is_scene.then(|| path.to_path_buf()));
                 noticed.into_iter().for_each(|notice| self.notices.tell(notice));
             }
+            Ok(Opened::Mesh(scene, file, noticed)) => {
+                self.put(scene, Some(file));
+                self.bench.never_saved();
+                noticed.into_iter().for_each(|notice| self.notices.tell(notice));
+            }
             Ok(Opened::Drawing(sketch)) => {
                 self.pad.put(sketch, &self.camera.view(self.view.screen));
                 self.think();
@@ -434,14 +443,31 @@ impl Modeler {
 
     /// Saves the document to a file.
     pub fn save_to(&mut self, file: PathBuf) -> bool {
-        match self.bench.save(file) {
-            Ok(()) => {
-                self.notices.tell("Saved.");
-                true
-            }
+        let Some(renamed) = self.rename_meshes(&file) else { return false };
+        if let Err(error) = self.bench.save(file) {
+            self.notices.warn(format!("Not saved: {error}"));
+            self.go_back(renamed as isize);
+            return false;
+        }
+        self.notices.tell("Saved.");
+        if renamed > 0
+            && let Err(error) = self.bench.begin_journal()
+        {
+            self.notices.warn(EditError::from(error).to_string());
+        }
+        true
+    }
+
+    /// Names meshes from the folder that the scene goes to, in so many steps; `None` if one is not there.
+    fn rename_meshes(&mut self, file: &Path) -> Option<usize> {
+        let folder = |file: &Path| file.parent().map(Path::to_path_buf).unwrap_or_default();
+        let from = self.bench.file().map(folder).unwrap_or_default();
+        match crate::meshes::renamed(&self.bench.scene().root, &from, &folder(file)) {
+            Ok(commands) => Some(commands.into_iter().filter(|command| self.apply(command.clone())).count()),
             Err(error) => {
-                self.notices.warn(format!("Not saved: {error}"));
-                false
+                self.notices
+                    .warn(format!("Not saved: a mesh of the scene, or the folder, is not there: {error}"));
+                None
             }
         }
     }

@@ -205,6 +205,19 @@ impl Workbench {
         Ok(())
     }
 
+    /// The scene is in no file, whatever [`Self::file`] says it may be saved as.
+    pub fn never_saved(&mut self) {
+        self.saved = Scene::new(empty());
+    }
+
+    /// Begins another journal, with the scene as it is: what the one so far says is no longer true of its files.
+    ///
+    /// Errors: a folder that cannot be written; then nothing is protected.
+    pub fn begin_journal(&mut self) -> Result<(), JournalError> {
+        self.broken = self.journal.take().or(self.broken.take());
+        self.protect()
+    }
+
     /// Takes the document off the table: it is saved, or not wanted.
     pub fn close(self) {
         for journal in self.journal.into_iter().chain(self.broken) {

@@ -229,6 +229,25 @@ fn a_tree_of_a_hundred_levels_shows_and_can_be_worked_on() {
 }
 
 #[test]
+fn three_lessons_lead_from_the_empty_page_to_a_hole() {
+    let mut screen = screen(None);
+    press(&mut screen, "Show me how");
+    assert!(screen.query_by_label("Lesson 1 of 3: draw").is_some());
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 110.0));
+    press(&mut screen, "Inflate");
+    assert!(screen.query_by_label("Lesson 2 of 3: blend").is_some());
+    draw(&mut screen, circle(at + vec2(110.0, 0.0), 60.0));
+    press(&mut screen, "Grow");
+    assert!(screen.query_by_label("Lesson 3 of 3: cut").is_some());
+    draw(&mut screen, circle(at - vec2(30.0, 0.0), 30.0));
+    press(&mut screen, "Cut a hole");
+    assert!(screen.query_by_label("That is all you need").is_some());
+    press(&mut screen, "End lessons");
+    assert!(screen.query_by_label("That is all you need").is_none());
+}
+
+#[test]
 fn every_suggestion_has_a_picture_of_what_it_makes() {
     let mut screen = screen(None);
     let at = middle(&screen);

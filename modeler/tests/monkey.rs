@@ -74,6 +74,8 @@ struct Monkey {
     size: Vec2,
     files: Vec<PathBuf>,
     worst: Duration,
+    /// Which of its plays it is at.
+    doing: u32,
 }
 
 impl Monkey {
@@ -106,7 +108,8 @@ impl Monkey {
 
     /// Does something.
     fn play(&mut self, screen: &mut Screen) {
-        match self.rng.u32(..22) {
+        self.doing = self.rng.u32(..22);
+        match self.doing {
             0..=5 => self.stroke(screen),
             6..=9 => self.tap(screen),
             10 | 11 => self.key(screen),
@@ -249,6 +252,18 @@ impl Monkey {
     }
 }
 
+/// What is on the table, in numbers.
+fn tree(screen: &Screen) -> String {
+    let (mut nodes, mut deepest) = (0, 0);
+    let mut waiting = vec![(screen.state().bench.scene().root.clone(), 0)];
+    while let Some((node, depth)) = waiting.pop() {
+        nodes += 1;
+        deepest = deepest.max(depth);
+        waiting.extend(node.children().iter().map(|child| (child.clone(), depth + 1)));
+    }
+    format!("{nodes} nodes in {deepest} levels")
+}
+
 /// The memory of this process, bytes; 0 where nobody says.
 fn memory() -> u64 {
     let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
@@ -288,6 +303,7 @@ fn nothing_that_a_monkey_does_ends_or_stalls_the_modeler() {
             size: vec2(1280.0, 800.0),
             files: dropped.clone(),
             worst: Duration::ZERO,
+            doing: 0,
         };
         let mut screen = screen(Some(folder.path().join("sessions")));
         let (began, mut most) = (Instant::now(), 0);
@@ -299,13 +315,16 @@ fn nothing_that_a_monkey_does_ends_or_stalls_the_modeler() {
             assert!(most < MOST_MEMORY, "seed {seed}: {} MiB after {plays} plays", most >> 20);
             assert!(
                 monkey.worst < LONGEST_FRAME,
-                "seed {seed}: a frame of {:?} after {plays} plays",
-                monkey.worst
+                "seed {seed}: a frame of {:?} after {plays} plays, the last of kind {}; {}",
+                monkey.worst,
+                monkey.doing,
+                tree(&screen)
             );
         }
         let document = screen.state().bench.document();
         println!(
-            "  {plays} plays, {} steps in the history, worst frame {:.0} ms, {} MiB at most",
+            "  {plays} plays, {}, {} steps in the history, worst frame {:.0} ms, {} MiB at most",
+            tree(&screen),
             document.undo_names().count(),
             monkey.worst.as_secs_f64() * 1e3,
             most >> 20

@@ -8,7 +8,8 @@ use crate::meshing;
 use crate::output::{self, Report};
 use crate::progress::Meter;
 use crate::timings::Timings;
-use blobtree::{Scene, SceneSources};
+use blobtree::build::{Build as _, primitive, union};
+use blobtree::{Primitive, Scene, SceneSources};
 use modeler::desk::{Desk, Opened, Purpose};
 use polygonizer::Cancel;
 use sketch::stroke::{self, DoodleChoice, Sketch};
@@ -27,6 +28,9 @@ const EXAMPLES: [(&str, &str); 8] = [
     ("Twisted vase", include_str!("../../examples/twisted-vase.trullo")),
     ("Two blobs at growing distance", include_str!("../../examples/two-blobs.trullo")),
 ];
+
+/// How far the influence of a mesh reaches beyond its surface, mm, as the scene format has it.
+const FALLOFF: f32 = 5.0;
 
 /// Files on this computer.
 #[derive(Debug, Default)]
@@ -49,13 +53,17 @@ impl Desk for Files {
             return drawing(path).map(Opened::Drawing).map_err(|failure| failure.to_string());
         }
         let mut report = Report::default();
-        match work(|job| input::open(path, None, Prefer::Scene, job, &mut report))? {
-            Input::Scene(scene) => Ok(Opened::Scene(scene, report.notices)),
-            Input::Mesh(_) => Err(format!(
-                "{}: a mesh without a scene; put it into a scene as a node of type mesh",
-                path.display()
-            )),
-        }
+        let input = work(|job| input::open(path, None, Prefer::Scene, job, &mut report))?;
+        let loaded = match input {
+            Input::Scene(scene) => return Ok(Opened::Scene(scene, report.notices)),
+            Input::Mesh(loaded) => loaded,
+        };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mesh = input::imported_mesh(path, &loaded.mesh, Some(folder), FALLOFF);
+        let mesh = mesh.map_err(|failure| failure.to_string())?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let scene = Scene::new(union([primitive(Primitive::Mesh(mesh)).named(&*name)]));
+        Ok(Opened::Mesh(scene, free_name(folder, &name), report.notices))
     }
 
     fn sources<'a>(&'a mut self, file: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
@@ -108,6 +116,13 @@ impl Desk for Files {
     fn examples(&self) -> &[(&'static str, &'static str)] {
         &EXAMPLES
     }
+}
+
+/// The scene's file beside a mesh: none that is there already.
+fn free_name(folder: &Path, name: &str) -> PathBuf {
+    let numbered = (2..).map(|number| format!("{name} {number}.trullo"));
+    let mut names = std::iter::once(format!("{name}.trullo")).chain(numbered).map(|name| folder.join(name));
+    names.find(|file| !file.exists()).unwrap_or_else(|| folder.join(name))
 }
 
 /// The strokes of a drawing's file.

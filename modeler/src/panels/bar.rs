@@ -1,6 +1,7 @@
 //! The bar above: files, undo, the pen's tools, and how the model is shown.
 
 use crate::dialog::{Dialog, Then};
+use crate::lesson::Lesson;
 use crate::modeler::Modeler;
 use crate::settings::{Habit, Tool};
 use crate::stage::Look;
@@ -35,6 +36,9 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         ui.separator();
         if ui.button("Export").on_hover_text("Write a mesh for printing (Ctrl+E)").clicked() {
             Dialog::begin_export(modeler);
+        }
+        if ui.button("Lessons").on_hover_text("Three short lessons on your own page").clicked() {
+            modeler.lesson = Some(Lesson::FIRST);
         }
         if ui.button("?").on_hover_text("Keys and gestures").clicked() {
             modeler.dialog = Some(Dialog::Help);

@@ -42,6 +42,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui, stage: &mut dyn Stage) {
         hand::heed(modeler, ui, &response);
         picture(modeler, ui, rect, stage);
         overlay::show(modeler, ui, &response);
+        crate::lesson::show(modeler, ui, rect);
     });
 }
 
