@@ -1,9 +1,14 @@
 //! What the modeler asks of the program around it: files.
 
-use blobtree::{Scene, SceneSources};
+use blobtree::{BakeStore, NodeRef, Scene, SceneSources};
+use polygonizer::Cancel;
 use sketch::stroke::Sketch;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Makes support-free nodes print without supports, for the view: fills the store for a tree; whether it could. It runs
+/// in the background, and stops when it is cancelled.
+pub type Bake = Box<dyn FnMut(&NodeRef, &mut BakeStore, &Cancel) -> bool + Send>;
 
 /// What a file turned out to be.
 #[derive(Debug)]
@@ -49,6 +54,11 @@ pub trait Desk {
 
     /// The file that was chosen since the last look; `Some(None)` if none was.
     fn browsed(&mut self) -> Option<Option<PathBuf>>;
+
+    /// What makes support-free nodes so in the view. By default they are shown as drawn.
+    fn bake(&self) -> Option<Bake> {
+        None
+    }
 
     /// The scenes of the gallery: their titles and their texts.
     fn examples(&self) -> &[(&'static str, &'static str)];

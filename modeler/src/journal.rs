@@ -3,12 +3,16 @@
 //! A session is a folder: `scene.trullo` is the document as it was opened, `journal` says in its first line where that
 //! came from, and in each further line one [`JournalEntry`]. The program that works on a session holds a lock on its
 //! journal; a session that nobody holds was left behind. The user's own file is never touched.
+//!
+//! What was done is with the system before it is shown, so that it outlives the program. A thread then has the disk take
+//! it, which may last seconds on a busy one: if the power fails, what was done meanwhile may be lost.
 
-use blobtree::{Document, JournalEntry, Scene, SceneSources, write_atomically};
+use blobtree::{Document, JournalEntry, Scene, SceneSources};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, Receiver, Sender};
 use std::time::SystemTime;
 
 /// The document as it was opened.
@@ -55,9 +59,6 @@ pub enum JournalError {
     /// The scene or an entry has no legal text.
     #[error("{0}")]
     Scene(#[from] blobtree::SceneError),
-    /// The document as it was opened cannot be saved.
-    #[error("{0}")]
-    Base(#[from] blobtree::SaveError),
     /// It is no journal, or one of a newer program.
     #[error("{path}: not a journal of this version: {what}", path = path.display())]
     Foreign {
@@ -74,6 +75,7 @@ pub struct Journal {
     folder: PathBuf,
     /// Locked for as long as it is open.
     file: File,
+    disk: ToDisk,
 }
 
 impl Journal {
@@ -94,7 +96,10 @@ impl Journal {
         fs::create_dir_all(sessions).map_err(failed(sessions, "making the folder for sessions"))?;
         let folder = tempfile::Builder::new().prefix("session-").tempdir_in(sessions);
         let folder = folder.map_err(failed(sessions, "making a folder in it"))?;
-        write_atomically(&folder.path().join(BASE), scene.to_text()?.as_bytes(), 0)?;
+        let base = folder.path().join(BASE);
+        let text = scene.to_text()?;
+        let mut file_of_base = File::create_new(&base).map_err(failed(&base, "making it"))?;
+        file_of_base.write_all(text.as_bytes()).map_err(failed(&base, "writing it"))?;
         let path = folder.path().join(JOURNAL);
         let mut journal = File::create_new(&path).map_err(failed(&path, "making it"))?;
         journal.try_lock().map_err(|e| failed(&path, "locking it")(e.into()))?;
@@ -103,15 +108,18 @@ impl Journal {
         let line =
             serde_json::to_string(&header).map_err(|e| failed(&path, "writing its first line")(e.into()))?;
         append(&mut journal, &line).map_err(failed(&path, "writing its first line"))?;
-        Ok(Self { folder: folder.keep(), file: journal })
+        let disk = ToDisk::start(&[&file_of_base, &journal]).map_err(failed(&path, "preparing it"))?;
+        Ok(Self { folder: folder.keep(), file: journal, disk })
     }
 
-    /// Writes an entry and waits until it is on the disk. `scene` is the document's before it.
+    /// Writes an entry, which outlives the program from then on, and has the disk take it. `scene` is the document's
+    /// before it.
     ///
-    /// Errors: a disk that is full or gone; an entry without text. Then the entry is not in the journal.
+    /// Errors: a disk that is full or gone; an entry without text. Then the entry is not in the journal, or not on the
+    /// disk.
     pub fn add(&mut self, entry: &JournalEntry, scene: &Scene) -> Result<(), JournalError> {
         let line = entry.to_line(scene)?;
-        append(&mut self.file, &line).map_err(|error| JournalError::Io {
+        append(&mut self.file, &line).and_then(|()| self.disk.take()).map_err(|error| JournalError::Io {
             path: self.folder.join(JOURNAL),
             step: "writing what was done",
             error,
@@ -120,19 +128,72 @@ impl Journal {
 
     /// Ends the session: its document is saved, or is not wanted. What cannot be removed stays, and is offered again.
     pub fn end(self) {
-        drop(self.file);
-        let _ = fs::remove_dir_all(&self.folder);
+        let folder = self.folder.clone();
+        drop(self);
+        let _ = fs::remove_dir_all(folder);
+    }
+}
+
+impl Drop for Journal {
+    fn drop(&mut self) {
+        // The thread may hold the file for a while.
+        let _ = self.file.unlock();
     }
 }
 
 /// Writes a whole line, or takes back what of it was written.
 fn append(file: &mut File, line: &str) -> io::Result<()> {
     let end = file.seek(SeekFrom::End(0))?;
-    let written = file.write_all(format!("{line}\n").as_bytes()).and_then(|()| file.sync_data());
+    let written = file.write_all(format!("{line}\n").as_bytes());
     if written.is_err() {
         let _ = file.set_len(end);
     }
     written
+}
+
+/// A thread that has the disk take what was written to some files.
+#[derive(Debug)]
+struct ToDisk {
+    wake: Sender<()>,
+    failed: Receiver<io::Error>,
+}
+
+impl ToDisk {
+    /// Starts it, and has all of these files taken once. It ends when this is dropped.
+    ///
+    /// Errors: a system without a thread or a file to spare.
+    fn start(files: &[&File]) -> io::Result<Self> {
+        let files: Vec<File> = files.iter().map(|file| file.try_clone()).collect::<Result<_, _>>()?;
+        let (wake, woken) = mpsc::channel();
+        let (fail, failed) = mpsc::channel();
+        std::thread::Builder::new().name("journal".into()).spawn(move || {
+            let mut next = files.iter();
+            loop {
+                // One after the other at first; then the last, which grows.
+                let Some(file) = next.next().or(files.last()) else { return };
+                if let Err(error) = file.sync_data()
+                    && fail.send(error).is_err()
+                {
+                    return;
+                }
+                if next.len() == 0 && woken.recv().is_err() {
+                    return;
+                }
+                // Whatever else was written meanwhile is taken with it.
+                while woken.try_recv().is_ok() {}
+            }
+        })?;
+        Ok(Self { wake, failed })
+    }
+
+    /// Has the disk take what was written.
+    ///
+    /// Errors: what it could not take before.
+    fn take(&self) -> io::Result<()> {
+        // Without the thread, what it said last says why.
+        let _ = self.wake.send(());
+        self.failed.try_recv().map_or(Ok(()), Err)
+    }
 }
 
 /// A session that was left behind.
@@ -209,12 +270,15 @@ impl LeftBehind {
         }
         self.journal.set_len(good).map_err(failed("dropping its broken end"))?;
         self.journal.seek(SeekFrom::End(0)).map_err(failed("going to its end"))?;
-        Ok(Recovered { document, journal: Journal { folder: self.folder, file: self.journal }, lost })
+        let disk = ToDisk::start(&[&self.journal]).map_err(failed("preparing it"))?;
+        let journal = Journal { folder: self.folder, file: self.journal, disk };
+        Ok(Recovered { document, journal, lost })
     }
 
     /// Throws the session away.
     pub fn forget(self) {
-        Journal { folder: self.folder, file: self.journal }.end();
+        drop(self.journal);
+        let _ = fs::remove_dir_all(&self.folder);
     }
 }
 

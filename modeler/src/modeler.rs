@@ -83,6 +83,7 @@ impl Modeler {
     ) -> std::io::Result<Self> {
         let (bench, unprotected) = Workbench::new(Workbench::empty_page(), None, sessions.as_deref())
             .expect("an empty page is legal");
+        let solids = SolidMaker::start(wake.clone(), desk.bake())?;
         let mut notices = Notices::default();
         if let Some(error) = unprotected {
             notices.warn(EditError::from(error).to_string());
@@ -106,7 +107,7 @@ impl Modeler {
             held_middle: None,
             form: None,
             waiting: None,
-            solids: SolidMaker::start(wake.clone())?,
+            solids,
             solid: None,
             asked: None,
             thinker: Thinker::start(wake)?,
@@ -359,6 +360,24 @@ impl Modeler {
                 Some(NodePath([rest, &[last + 1]].concat()))
             });
             self.bench.select(copy);
+        }
+    }
+
+    /// Puts a mirrored copy of what is selected on the other side of the middle.
+    pub fn mirror_selected(&mut self) {
+        let Some(path) = self.bench.selected().cloned() else { return };
+        match placing::mirrored(&self.bench.scene().root, &path) {
+            Some(command) => {
+                self.apply(command);
+            }
+            None => self.notices.tell("Only parts of a union, a blend or a cut can have a copy beside them."),
+        }
+    }
+
+    /// Puts what is selected on the ground.
+    pub fn ground_selected(&mut self) {
+        if let Some(bounds) = self.selected_box() {
+            self.place(Motion::Move(Vec3::new(0.0, 0.0, -bounds.min.z)), true);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Moving, turning and sizing the selected node: from a hand's movement in the world to a command.
 
-use blobtree::{Command, NewShape, NodePath, NodeRef, Shape, Transform, Warp};
-use glam::{EulerRot, Mat3, Quat, Vec3};
+use blobtree::{AffineMap, Command, NewShape, Node, NodePath, NodeRef, Shape, Transform, Warp};
+use glam::{Affine3A, EulerRot, Mat3, Quat, Vec3};
 
 /// A change of place in the world, about a fixed point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +45,34 @@ pub fn command(root: &NodeRef, path: &NodePath, motion: Motion) -> Option<Comman
         Some(path) => Command::SetShape { path, shape: NewShape::Warp(Warp::Transform(new)) },
         None => Command::WrapInWarp { path: path.clone(), warp: Warp::Transform(new) },
     })
+}
+
+/// What puts a mirrored copy of the node at `path` beside it, on the other side of the plane x = 0 of the world. `None`
+/// where no copy can stand beside it: below warps that bend space, and where there is no operator above.
+pub fn mirrored(root: &NodeRef, path: &NodePath) -> Option<Command> {
+    let (parent, index) = (path.parent()?, *path.0.last()?);
+    let above = parent.find(root)?;
+    if !matches!(above.shape, Shape::Operator(..)) {
+        return None;
+    }
+    let mut world_from_parent = Affine3A::IDENTITY;
+    let mut node = root;
+    for &index in &parent.0 {
+        if let Shape::Warp(warp, _) = &node.shape {
+            world_from_parent *= warp.parent_from_child()?;
+        }
+        node = node.children().get(index)?;
+    }
+    let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+    let map = world_from_parent.inverse() * mirror * world_from_parent;
+    let (linear, to) = (Mat3::from(map.matrix3), map.translation);
+    let row = |axis: usize| {
+        let row = linear.row(axis);
+        [row.x, row.y, row.z, to[axis]]
+    };
+    let warp = Warp::Affine(AffineMap { rows: [row(0), row(1), row(2)] });
+    let copy = Node::new(Shape::Warp(warp, path.find(root)?.clone()));
+    Some(Command::Insert { parent, index: index + 1, node: copy.into() })
 }
 
 /// A motion of the world as it is seen in the space of the parent of the node at `path`.
@@ -136,6 +164,23 @@ mod tests {
         let sized = Motion::Scale { about, factor: 2.0 };
         let before = Tree::new(&root).value(about + 0.5 * (place - about));
         assert!((value_after(&root, &[0], sized, place) - before).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_mirrored_copy_stands_on_the_other_side_also_below_turned_nodes() {
+        let part = cuboid([12., 3., 5.], [6., 4., 10.]);
+        let root: NodeRef =
+            union([union([part]).rotate_degrees([0., 0., 30.]).translate([4., 0., 1.])]).into();
+        let path = NodePath(vec![0, 0, 0, 0]);
+        assert_eq!(path.find(&root).expect("a part").type_name(), "box");
+        let mut document = Document::new(Scene::new(root.clone())).expect("legal");
+        document.apply(mirrored(&root, &path).expect("it has a parent")).expect("it can be applied");
+        let (before, after) = (Tree::new(&root), Tree::new(&document.scene().root));
+        for place in [Vec3::new(13.0, 8.0, 6.0), Vec3::new(12.0, 10.0, 3.0), Vec3::new(15.5, 9.0, 9.0)] {
+            let there = Vec3::new(-place.x, place.y, place.z);
+            assert!((after.value(there) - before.value(place)).abs() < 1e-4);
+            assert!((after.value(place) - before.value(place)).abs() < 1e-4);
+        }
     }
 
     #[test]

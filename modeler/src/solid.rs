@@ -3,6 +3,7 @@
 //! A coarse solid is made to its end and shown even if the hand has moved on meanwhile: a drag whose every place stops
 //! the work on the one before would show nothing until the hand rests.
 
+use crate::desk::Bake;
 use crate::newest::{Answering, Newest};
 use blobtree::{Aabb, BakeStore, Field, NodeRef, Palette, Tree, changed_region};
 use glam::Vec3;
@@ -89,14 +90,19 @@ pub struct SolidMaker {
 }
 
 impl SolidMaker {
-    /// Starts the thread; `wake` is called when a solid is ready.
+    /// Starts the thread; `wake` is called when a solid is ready. Fine solids have their support-free nodes baked by
+    /// `bake`, if there is one.
     ///
     /// Errors: a system without a thread to spare.
-    pub fn start(wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
-        let mut levels = CELLS.map(|cells| Level { cells, surface: None });
-        let mut extent = Aabb::EMPTY;
+    pub fn start(wake: Arc<dyn Fn() + Send + Sync>, bake: Option<Bake>) -> std::io::Result<Self> {
+        let mut maker = Maker {
+            levels: CELLS.map(|cells| Level { cells, surface: None }),
+            extent: Aabb::EMPTY,
+            bakes: BakeStore::new(),
+            bake,
+        };
         let worker = Newest::start("solid", wake, move |question: Question, answering| {
-            make(&mut levels, &mut extent, &question, answering);
+            maker.make(&question, answering);
         })?;
         Ok(Self { worker, asked: 0, first: 0 })
     }
@@ -130,32 +136,56 @@ struct Level {
     surface: Option<(NodeRef, Surface)>,
 }
 
-/// Makes one level after the other. `extent` is around the last solid, by which cells are chosen.
-fn make(levels: &mut [Level; 2], extent: &mut Aabb, question: &Question, answering: &Answering<Solid>) {
-    let mut began = Instant::now();
-    let tree = Tree::new(&question.root);
-    let palette = Palette::new(&question.root, &BakeStore::new());
-    if extent.is_empty() {
-        *extent = tree.support();
-    }
-    for (i, level) in levels.iter_mut().enumerate() {
-        let is_fine = i == 1;
-        if is_fine {
-            if !rests(&answering.cancel) {
-                return;
-            }
-            began = Instant::now();
+/// What makes solids.
+struct Maker {
+    levels: [Level; 2],
+    /// Around the last solid, by which cells are chosen.
+    extent: Aabb,
+    bakes: BakeStore,
+    bake: Option<Bake>,
+}
+
+impl Maker {
+    /// Makes one level after the other.
+    fn make(&mut self, question: &Question, answering: &Answering<Solid>) {
+        let mut began = Instant::now();
+        let tree = Tree::new(&question.root);
+        let palette = Palette::new(&question.root, &BakeStore::new());
+        if self.extent.is_empty() {
+            self.extent = tree.support();
         }
-        let stop = if is_fine { &answering.cancel } else { &answering.closed };
-        let Some(surface) = level.follow(&question.root, &tree, *extent, stop) else { return };
-        let drawn = draw(surface, &palette, question, is_fine);
-        *extent = drawn.bounds;
-        let made = Solid { unconstrained: tree.unconstrained(), took: began.elapsed(), ..drawn };
-        if is_fine {
-            answering.give(made);
-        } else {
-            answering.give_late(made);
+        let [coarse, fine] = &mut self.levels;
+        let Some(surface) = coarse.follow(&question.root, &tree, self.extent, &answering.closed) else {
+            return;
+        };
+        let drawn = draw(surface, &palette, question, false);
+        self.extent = drawn.bounds;
+        let unconstrained = tree.unconstrained();
+        answering.give_late(Solid { unconstrained, took: began.elapsed(), ..drawn });
+        if !rests(&answering.cancel) {
+            return;
         }
+        began = Instant::now();
+        if let Some(bake) = self.bake.as_mut().filter(|_| unconstrained > 0)
+            && bake(&question.root, &mut self.bakes, &answering.cancel)
+        {
+            // A change below such a node may change all of it, so its surface is made anew.
+            fine.surface = None;
+            let tree = self.bakes.compile(&question.root);
+            let palette = Palette::new(&question.root, &self.bakes);
+            let Some(cell) = fine.cell(self.extent) else { return };
+            let options = Options { cancel: Some(&answering.cancel), ..Options::default() };
+            let Ok(surface) = Surface::build(&tree, cell, &options) else { return };
+            let drawn = draw(&surface, &palette, question, true);
+            answering.give(Solid { unconstrained: tree.unconstrained(), took: began.elapsed(), ..drawn });
+            return;
+        }
+        let Some(surface) = fine.follow(&question.root, &tree, self.extent, &answering.cancel) else {
+            return;
+        };
+        let drawn = draw(surface, &palette, question, true);
+        self.extent = drawn.bounds;
+        answering.give(Solid { unconstrained, took: began.elapsed(), ..drawn });
     }
 }
 
@@ -169,12 +199,17 @@ fn rests(cancel: &Cancel) -> bool {
 }
 
 impl Level {
+    /// The size of cells for a solid this large.
+    fn cell(&self, solid: Aabb) -> Option<CellSize> {
+        let longest = if solid.is_empty() { 1.0 } else { solid.size().max_element() };
+        CellSize::from_mm((longest / self.cells).max(1e-3)).ok()
+    }
+
     /// The surface of the tree, in cells of about the right size for a solid this large: what was there, changed where
     /// the trees differ, or a new one. `None` if it was cancelled.
     fn follow(&mut self, root: &NodeRef, tree: &Tree, solid: Aabb, cancel: &Cancel) -> Option<&Surface> {
         let options = Options { cancel: Some(cancel), ..Options::default() };
-        let longest = if solid.is_empty() { 1.0 } else { solid.size().max_element() };
-        let wanted = CellSize::from_mm((longest / self.cells).max(1e-3)).ok()?;
+        let wanted = self.cell(solid)?;
         let kept = self.surface.take().filter(|(_, surface)| {
             let ratio = surface.cell().mm() / wanted.mm();
             (1.0 / SLACK..=SLACK).contains(&ratio)
@@ -255,13 +290,13 @@ mod tests {
     #[test]
     fn a_solid_that_follows_a_drag_is_the_one_that_is_made_anew() {
         let two = |x: f32| -> NodeRef { union([point([0., 0., 10.], 10.), point([x, 0., 10.], 8.)]).into() };
-        let mut following = SolidMaker::start(Arc::new(|| ())).expect("a thread");
+        let mut following = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
         let first = following.ask(&two(12.0), Asking::Other, Instant::now());
         fine(&mut following, first);
         let after = two(13.0);
         let version = following.ask(&after, Asking::Drag, Instant::now());
         let followed = fine(&mut following, version);
-        let mut anew = SolidMaker::start(Arc::new(|| ())).expect("a thread");
+        let mut anew = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
         let version = anew.ask(&after, Asking::Other, Instant::now());
         let made = fine(&mut anew, version);
         // The cells were chosen for the solid before the drag.
@@ -274,7 +309,7 @@ mod tests {
     #[test]
     fn a_drag_that_never_rests_is_followed() {
         let at = |x: f32| -> NodeRef { union([point([x, 0., 10.], 10.), point([0., 0., 30.], 8.)]).into() };
-        let mut maker = SolidMaker::start(Arc::new(|| ())).expect("a thread");
+        let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
         let until = Instant::now() + Duration::from_secs(60);
         let mut shown = 0;
         // A new place every millisecond, which is less than any solid takes.
@@ -291,7 +326,7 @@ mod tests {
 
     #[test]
     fn nothing_is_drawn_of_an_empty_page() {
-        let mut maker = SolidMaker::start(Arc::new(|| ())).expect("a thread");
+        let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
         let version =
             maker.ask(&crate::workbench::Workbench::empty_page().root, Asking::Other, Instant::now());
         let solid = fine(&mut maker, version);

@@ -247,6 +247,50 @@ fn three_lessons_lead_from_the_empty_page_to_a_hole() {
     assert!(screen.query_by_label("That is all you need").is_none());
 }
 
+/// Fingers touch together at these places, for one frame: a quarter of a second here.
+fn tap_with(screen: &mut Screen, places: &[egui::Pos2]) {
+    let event = |finger: usize, phase| egui::Event::Touch {
+        device_id: egui::TouchDeviceId(1),
+        id: egui::TouchId(finger as u64),
+        phase,
+        pos: places[finger],
+        force: None,
+    };
+    for phase in [egui::TouchPhase::Start, egui::TouchPhase::End] {
+        screen.input_mut().events.extend((0..places.len()).map(|finger| event(finger, phase)));
+        screen.step();
+    }
+    settle(screen);
+}
+
+#[test]
+fn a_tap_of_two_fingers_undoes_and_one_of_three_does_again() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 90.0));
+    press(&mut screen, "Inflate");
+    tap_with(&mut screen, &[at, at + vec2(60.0, 0.0)]);
+    assert!(types(&screen).is_empty());
+    tap_with(&mut screen, &[at, at + vec2(60.0, 0.0), at + vec2(120.0, 10.0)]);
+    assert_eq!(types(&screen), ["inflation"]);
+}
+
+#[test]
+fn a_part_is_put_on_the_ground_and_mirrored() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at + vec2(120.0, -60.0), 50.0));
+    press(&mut screen, "Inflate");
+    screen.key_press(Key::G);
+    settle(&mut screen);
+    let one = screen.state().solid().expect("a solid").bounds;
+    assert!(one.min.z.abs() < 0.3 && one.center().x > 5.0, "{one:?}");
+    screen.key_press(Key::M);
+    settle(&mut screen);
+    let both = screen.state().solid().expect("a solid").bounds;
+    assert!((both.min.x + one.max.x).abs() < 0.5 && (both.max.x - one.max.x).abs() < 0.5, "{both:?}");
+}
+
 #[test]
 fn every_suggestion_has_a_picture_of_what_it_makes() {
     let mut screen = screen(None);

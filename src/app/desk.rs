@@ -10,8 +10,9 @@ use crate::progress::Meter;
 use crate::timings::Timings;
 use blobtree::build::{Build as _, primitive, union};
 use blobtree::{Primitive, Scene, SceneSources};
-use modeler::desk::{Desk, Opened, Purpose};
+use modeler::desk::{Bake, Desk, Opened, Purpose};
 use polygonizer::Cancel;
+use printable::Rebaker;
 use sketch::stroke::{self, DoodleChoice, Sketch};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -111,6 +112,10 @@ impl Desk for Files {
         let answer = self.browsing.as_ref()?.try_recv().ok()?;
         self.browsing = None;
         Some(answer)
+    }
+
+    fn bake(&self) -> Option<Bake> {
+        Some(Box::new(|root, bakes, cancel| bakes.bake(root, &Rebaker::with_cancel(cancel)).is_ok()))
     }
 
     fn examples(&self) -> &[(&'static str, &'static str)] {

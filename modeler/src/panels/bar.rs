@@ -82,6 +82,8 @@ fn edit(modeler: &mut Modeler, ui: &mut Ui) {
     item(ui, "Redo", "Ctrl+Y", true, Modeler::redo);
     ui.separator();
     item(ui, "Duplicate", "Ctrl+D", selected, Modeler::duplicate_selected);
+    item(ui, "Mirror to the other side", "M", selected, Modeler::mirror_selected);
+    item(ui, "Put on the ground", "G", selected, Modeler::ground_selected);
     item(ui, "Remove", "Delete", selected, Modeler::remove_selected);
     item(ui, "Select the parent", "P", selected, Modeler::select_parent);
 }

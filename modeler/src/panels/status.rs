@@ -13,7 +13,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
             ui.colored_label(ui.visuals().warn_fg_color, "not protected against a crash");
         }
         if modeler.solid().is_some_and(|solid| solid.unconstrained > 0) {
-            ui.weak("support-free parts are shown as drawn; the export makes them so");
+            ui.weak("support-free parts are still shown as drawn");
         }
         ui.with_layout(Layout::right_to_left(egui::Align::Center), |ui| {
             let Some(solid) = modeler.solid() else { return };

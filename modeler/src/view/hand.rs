@@ -54,9 +54,34 @@ pub fn heed(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     }
 }
 
-/// Two fingers move and size the view, and turn nothing into a stroke.
+/// Fingers that touch together: how many at most, since when, and how far they have moved, points.
+#[derive(Clone, Copy, Debug)]
+pub struct Fingers {
+    most: usize,
+    since: f64,
+    moved: f32,
+}
+
+/// A tap of several fingers is shorter than this, seconds.
+const TAP_SECONDS: f64 = 0.35;
+
+/// Two fingers move and size the view, and turn nothing into a stroke. A tap of two undoes, one of three does again.
 fn fingers(modeler: &mut Modeler, ui: &Ui, response: &Response) {
-    let Some(touch) = ui.input(|input| input.multi_touch()) else { return };
+    let (touch, now) = ui.input(|input| (input.multi_touch(), input.time));
+    let Some(touch) = touch else {
+        if let Some(tap) = modeler.view.fingers.take()
+            && now - tap.since < TAP_SECONDS
+            && tap.moved < 3.0 * TAP
+        {
+            if tap.most == 2 { modeler.undo() } else { modeler.redo() }
+        }
+        return;
+    };
+    if response.rect.contains(touch.center_pos) {
+        let fingers = modeler.view.fingers.get_or_insert(Fingers { most: 0, since: now, moved: 0.0 });
+        fingers.most = fingers.most.max(touch.num_touches);
+        fingers.moved += touch.translation_delta.length() + 100.0 * (touch.zoom_delta - 1.0).abs();
+    }
     if !response.rect.contains(touch.center_pos) {
         return;
     }

@@ -28,6 +28,8 @@ pub struct ViewState {
     pub(super) pictures: pictures::Pictures,
     /// What the hand holds.
     pub(super) hold: hand::Hold,
+    /// Fingers that touch together.
+    pub(super) fingers: Option<hand::Fingers>,
     /// The last tap: where, and which of the nodes there it selected.
     pub(super) tapped: Option<(Vec2, usize)>,
 }
