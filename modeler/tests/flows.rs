@@ -292,6 +292,33 @@ fn a_part_is_put_on_the_ground_and_mirrored() {
 }
 
 #[test]
+fn strokes_that_a_slow_frame_gets_all_at_once_are_not_lost() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let mut events = vec![egui::Event::PointerMoved(at), egui::Event::PointerMoved(at - vec2(300.0, 0.0))];
+    for place in [at - vec2(100.0, 0.0), at + vec2(100.0, 0.0)] {
+        let line: Vec<_> = circle(place, 60.0).collect();
+        events.push(egui::Event::PointerMoved(line[0]));
+        events.push(button(line[0], true));
+        events.extend(line.iter().map(|at| egui::Event::PointerMoved(*at)));
+        events.push(button(line[line.len() - 1], false));
+    }
+    screen.input_mut().events.extend(events);
+    screen.step();
+    settle(&mut screen);
+    let sketch = screen.state().pad.sketch();
+    assert_eq!(sketch.strokes.len(), 2);
+    let [lo, hi] = sketch.bounds().expect("two circles");
+    assert!((hi - lo).distance(glam::Vec2::new(320.0, 120.0)) < 2.0, "{lo} to {hi}");
+}
+
+#[test]
 fn every_suggestion_has_a_picture_of_what_it_makes() {
     let mut screen = screen(None);
     let at = middle(&screen);

@@ -109,11 +109,18 @@ fn wheel(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     }
 }
 
+/// Where a button was pressed in this frame. egui forgets it if the button is let go in the same frame.
+fn pressed_at(events: &[Event]) -> Option<egui::Pos2> {
+    events.iter().find_map(|event| match event {
+        Event::PointerButton { pressed: true, pos, .. } => Some(*pos),
+        _ => None,
+    })
+}
+
 /// The hand takes hold of something.
 fn press(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     let pressed = |button| ui.input(|input| input.pointer.button_pressed(button));
-    let Some(at) = ui.input(|input| input.pointer.press_origin()).filter(|_| response.contains_pointer())
-    else {
+    let Some(at) = ui.input(|input| pressed_at(&input.events)).filter(|_| response.contains_pointer()) else {
         return;
     };
     let (shift, space) = ui.input(|input| (input.modifiers.shift, input.key_down(egui::Key::Space)));
@@ -153,8 +160,18 @@ fn pen(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     if events.iter().any(|event| matches!(event, Event::PointerMoved(_))) {
         modeler.ends(Wait::PenToStroke, modeler.now, None);
     }
-    for event in &events {
+    // What the pen did before it touched down in this frame is no part of the stroke.
+    let touches = |event: &Event| {
+        matches!(event, Event::PointerButton { button: PointerButton::Primary, pressed: true, .. })
+    };
+    let first = events.iter().position(touches).map_or(0, |place| place + 1);
+    for event in &events[first..] {
         match event {
+            // A slow frame may have several strokes.
+            Event::PointerButton { button: PointerButton::Primary, pressed: true, pos, .. } => {
+                modeler.pad.begin(sample(in_view(*pos, response), ui), modeler.settings.tool == Tool::Erase);
+                modeler.view.hold = Hold::Pen;
+            }
             Event::PointerMoved(to) => modeler.pad.go_on(sample(in_view(*to, response), ui)),
             Event::PointerButton { button: PointerButton::Primary, pressed: false, pos, .. } => {
                 let at = in_view(*pos, response);

@@ -208,7 +208,11 @@ fn suggestions(modeler: &mut Modeler, ui: &mut Ui, view: &View, response: &Respo
     area.show(ui.ctx(), |ui| {
         ui.spacing_mut().item_spacing.y = 4.0;
         if let (true, Some(reason)) = (expectations.suggestions.is_empty(), &expectations.no_outline) {
-            ui.label(RichText::new(reason.to_string()).background_color(ui.visuals().window_fill));
+            let text = format!("No solid of it yet: {reason}.");
+            egui::Frame::popup(ui.style()).inner_margin(8.0).show(ui, |ui| {
+                ui.set_max_width(BUTTON.x);
+                ui.label(RichText::new(text).color(ui.visuals().strong_text_color()));
+            });
         }
         for (i, suggestion) in expectations.suggestions.iter().enumerate() {
             let image = expectations.pictures.get(i).and_then(Option::as_ref);
