@@ -1,0 +1,22 @@
+//! `trullo convert`.
+
+use super::{Common, ConstraintArgs, ReadingArgs, ResolutionArgs};
+use clap::Args;
+use std::path::PathBuf;
+
+/// `trullo convert`.
+#[derive(Debug, Args)]
+pub struct ConvertArgs {
+    /// The mesh or scene to read.
+    pub input: PathBuf,
+    /// The file to write: .stl, .obj, .ply, .3mf or .trullo.
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    #[command(flatten)]
+    pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub constraint: ConstraintArgs,
+    #[command(flatten)]
+    pub common: Common,
+}
