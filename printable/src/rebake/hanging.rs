@@ -20,40 +20,74 @@ pub(super) struct Piece {
     pub island: bool,
 }
 
-/// All that must go for every layer to lie within `reach` of what is left of the one below, from the bottom up.
-///
-/// - **In:** `pitch`, how far apart places of a piece may be; both in mm.
-/// - **Promises:** the same for any number of threads.
-pub(super) fn hanging(slices: &Slices, reach: f64, pitch: f64) -> Vec<Piece> {
-    let lacking = |clipper: &mut Clipper, layer: usize| {
-        let below = layer.checked_sub(1).map(|below| &slices.layers[below].regions);
-        let Some(below) = below else { return Vec::new() };
-        Carrier { grid: &slices.grid, reach, clipper }.lacking(&slices.layers[layer].regions, below)
-    };
-    let count = slices.layers.len();
-    let mut lacks: Vec<Vec<(Region, bool)>> =
-        (0..count).into_par_iter().map_init(Clipper::new, lacking).collect();
-    // Where something goes, the layer above lacks more.
-    let mut clipper = Clipper::new();
-    let mut left: Option<Vec<Region>> = None;
-    for (layer, lacks) in lacks.iter_mut().enumerate() {
-        let regions = &slices.layers[layer].regions;
-        if let Some(left) = left {
-            *lacks = Carrier { grid: &slices.grid, reach, clipper: &mut clipper }.lacking(regions, &left);
-        }
-        let gone: Vec<Region> = lacks.iter().map(|(region, _)| region.clone()).collect();
-        left = (!gone.is_empty()).then(|| clipper.difference(regions, &gone));
+/// What every layer lacks.
+#[derive(Debug)]
+pub(super) struct Hanging {
+    /// mm.
+    reach: f64,
+    /// Of each layer, what the one below, as it is, does not carry; and whether that is all of a region.
+    lacks: Vec<Lacks>,
+}
+
+type Lacks = Vec<(Region, bool)>;
+
+impl Hanging {
+    /// What lies farther than `reach`, mm, from the layer below.
+    ///
+    /// Promises: the same for any number of threads.
+    pub fn new(slices: &Slices, reach: f64) -> Self {
+        let all: Vec<usize> = (0..slices.layers.len()).collect();
+        let mut hanging = Self { reach, lacks: vec![Lacks::new(); all.len()] };
+        hanging.renew(slices, &all);
+        hanging
     }
-    let pieces = |(layer, lacks): (usize, &Vec<(Region, bool)>)| {
-        let z = slices.planes.heights[layer];
-        let piece = |(region, island): &(Region, bool)| Piece {
-            places: places(region, &slices.grid, pitch).into_iter().map(|p| p.extend(z)).collect(),
-            area: slices.grid.square_mm(area(region)),
-            island: *island,
+
+    /// Follows the slices after a change of these layers, in ascending order.
+    pub fn renew(&mut self, slices: &Slices, changed: &[usize]) {
+        let mut stale: Vec<usize> = changed.iter().flat_map(|layer| [*layer, layer + 1]).collect();
+        stale.dedup();
+        stale.retain(|layer| *layer < self.lacks.len());
+        let reach = self.reach;
+        let lacking = |clipper: &mut Clipper, layer: &usize| {
+            let below = layer.checked_sub(1).map(|below| &slices.layers[below].regions);
+            let Some(below) = below else { return Lacks::new() };
+            Carrier { grid: &slices.grid, reach, clipper }.lacking(&slices.layers[*layer].regions, below)
         };
-        lacks.iter().map(piece).collect::<Vec<_>>()
-    };
-    lacks.par_iter().enumerate().flat_map_iter(pieces).collect()
+        let lacks: Vec<Lacks> = stale.par_iter().map_init(Clipper::new, lacking).collect();
+        for (layer, lacks) in stale.into_iter().zip(lacks) {
+            self.lacks[layer] = lacks;
+        }
+    }
+
+    /// All that must go for every layer to lie within reach of what is left of the one below, from the bottom up.
+    ///
+    /// - **In:** `pitch`, how far apart places of a piece may be, mm.
+    /// - **Promises:** the same for any number of threads.
+    pub fn pieces(&self, slices: &Slices, pitch: f64) -> Vec<Piece> {
+        let mut lacks = self.lacks.clone();
+        // Where something goes, the layer above lacks more.
+        let mut clipper = Clipper::new();
+        let mut left: Option<Vec<Region>> = None;
+        for (layer, lacks) in lacks.iter_mut().enumerate() {
+            let regions = &slices.layers[layer].regions;
+            if let Some(left) = left {
+                let mut carrier = Carrier { grid: &slices.grid, reach: self.reach, clipper: &mut clipper };
+                *lacks = carrier.lacking(regions, &left);
+            }
+            let gone: Vec<Region> = lacks.iter().map(|(region, _)| region.clone()).collect();
+            left = (!gone.is_empty()).then(|| clipper.difference(regions, &gone));
+        }
+        let pieces = |(layer, lacks): (usize, &Lacks)| {
+            let z = slices.planes.heights[layer];
+            let piece = |(region, island): &(Region, bool)| Piece {
+                places: places(region, &slices.grid, pitch).into_iter().map(|p| p.extend(z)).collect(),
+                area: slices.grid.square_mm(area(region)),
+                island: *island,
+            };
+            lacks.iter().map(piece).collect::<Vec<_>>()
+        };
+        lacks.par_iter().enumerate().flat_map_iter(pieces).collect()
+    }
 }
 
 /// What finds out what one layer lacks.

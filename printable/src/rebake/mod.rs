@@ -20,6 +20,7 @@ mod dents;
 mod disc;
 mod grow;
 mod hanging;
+mod look;
 mod path;
 mod path_map;
 mod region;

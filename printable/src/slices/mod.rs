@@ -65,6 +65,29 @@ impl Slices {
         Ok(Self { planes, layers, grid })
     }
 
+    /// Cuts these layers, in ascending order, anew after a change of the mesh that left its lowest point where it was;
+    /// says which of them are different now.
+    ///
+    /// Errors: as [`Self::new`].
+    pub(crate) fn renew(
+        &mut self,
+        mesh: &Mesh,
+        layers: &[usize],
+        watch: &Watch,
+    ) -> Result<Vec<usize>, SliceError> {
+        check(mesh)?;
+        let heights: Vec<f64> = layers.iter().map(|layer| self.planes.heights[*layer]).collect();
+        let cut = cut(mesh, &heights, self.grid, watch)?;
+        let mut different = Vec::new();
+        for (layer, new) in layers.iter().zip(cut) {
+            if self.layers[*layer] != new {
+                self.layers[*layer] = new;
+                different.push(*layer);
+            }
+        }
+        Ok(different)
+    }
+
     /// The regions of a layer, as rings of places in mm: each region's outline counter-clockwise, then its holes
     /// clockwise. Nothing for a layer that does not exist.
     pub fn regions(&self, layer: usize) -> impl Iterator<Item = Vec<Vec<DVec2>>> + '_ {
