@@ -110,6 +110,12 @@ impl Thinker {
         self.asked
     }
 
+    /// The sketch is gone: nothing more about it is wanted.
+    pub fn stop(&mut self) {
+        self.asked += 1;
+        self.worker.stop();
+    }
+
     /// Whether this answers the newest question.
     pub fn is_newest(&self, expectations: &Expectations) -> bool {
         expectations.version == self.asked

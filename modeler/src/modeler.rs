@@ -309,6 +309,8 @@ impl Modeler {
         let before = self.bench.scene().root.clone();
         if self.apply(chosen.command) {
             self.asking = Asking::Choice;
+            // Its pictures would only keep the solid waiting.
+            self.thinker.stop();
             self.pad.clear();
             self.bench.select(newest(&before, &self.bench.scene().root));
             self.selected_by_hand = false;

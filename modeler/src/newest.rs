@@ -90,6 +90,13 @@ impl<Q: Send + 'static, A: Send + 'static> Newest<Q, A> {
         self.desk.arrived.notify_one();
     }
 
+    /// Nothing that was asked is wanted any more.
+    pub fn stop(&self) {
+        let mut waiting = self.desk.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.current.cancel();
+        waiting.question = None;
+    }
+
     /// The answers since the last look, oldest first. Some may still be to questions before the newest.
     pub fn answers(&self) -> impl Iterator<Item = A> {
         self.answers.try_iter()
