@@ -42,6 +42,8 @@ pub(super) struct Closed<'a> {
     pub noise: f64,
     /// Whether only places were kept at which the line bends.
     pub sparse: bool,
+    /// Samples that are corners for sure, ascending.
+    pub known: &'a [usize],
 }
 
 /// A straight line fitted to a side.
@@ -159,8 +161,9 @@ pub(super) fn find(line: &Closed, wishes: &Wishes) -> Vec<usize> {
         .filter(|candidate| !(line.sparse && line.may_be_an_arc(candidate.sample, reach)))
         .collect();
     candidates.sort_by(|a, b| b.turn.total_cmp(&a.turn).then(a.sample.cmp(&b.sample)));
-    let mut taken: Vec<usize> = Vec::new();
-    let mut corners: Vec<usize> = Vec::new();
+    let known = line.known.iter().copied().filter(|&i| line.samples[i].smoothing < 0.5);
+    let mut taken: Vec<usize> = known.collect();
+    let mut corners = taken.clone();
     for Candidate { sample, .. } in candidates {
         if taken.iter().any(|&other| apart(line, other, sample) < reach) {
             continue;

@@ -3,10 +3,13 @@
 use super::Contour;
 use super::banded;
 use super::corners::{self, Closed, Wishes, meeting};
-use super::line::{Sample, are_sparse, noise};
+use super::cut_corners::restored;
+use super::line::{Sample, are_sparse, noise, noise_between};
 use super::polygon;
 use glam::DVec2;
 
+/// Nearer than this to the first sample, in extents, the last one repeats it.
+const REPETITION: f64 = 1e-6;
 /// Longest step between samples, in extents; longer edges get samples on their way.
 const STEP: f64 = 0.012;
 /// What a sample put on the way counts beside one of the pen: the edge is a guess between two places that are not.
@@ -14,7 +17,7 @@ const WEIGHT_ON_THE_WAY: f64 = 0.02;
 /// Shortest step between points of the result, in extents.
 const SHORTEST_STEP: f64 = 0.003;
 /// Smoothing lengths that are tried, in extents; wiggles shorter than six times the length go.
-const LENGTHS: [f64; 10] = [0.003, 0.005, 0.008, 0.012, 0.018, 0.027, 0.04, 0.055, 0.075, 0.1];
+const LENGTHS: [f64; 13] = [0.003, 0.005, 0.008, 0.012, 0.018, 0.027, 0.04, 0.055, 0.075, 0.1, 0.15, 0.3, 1.];
 /// Steps between samples up to this, in extents, may have cut off a corner.
 const CUT_TIP: f64 = 0.05;
 /// Loops up to this long, in extents, that smoothing leaves are cut off.
@@ -45,11 +48,14 @@ pub(super) fn fair(samples: &[Sample], wishes: &Wishes) -> Option<Contour> {
     if samples.len() < 3 || extent <= 0. {
         return None;
     }
-    let noise = noise(samples);
-    let dense = densified(samples, STEP * extent);
-    let lengths = lengths(&dense);
+    let samples = without_repetition(samples, extent);
     let sparse = are_sparse(samples);
-    let line = Closed { samples: &dense, lengths: &lengths, extent, noise, sparse };
+    let restored = restored(samples, extent);
+    let noise = noise_between(&restored.samples, &restored.corners);
+    let dense = densified(&restored.samples, STEP * extent);
+    let lengths = lengths(&dense);
+    let known = restored.places_in(&dense);
+    let line = Closed { samples: &dense, lengths: &lengths, extent, noise, sparse, known: &known };
     let found = corners::find(&line, wishes);
     let sides = split(&line, &found);
     let smooth = least_expected_error(&sides);
@@ -78,6 +84,12 @@ pub(super) fn fair_open(samples: &[Sample]) -> Vec<DVec2> {
     let noise = if sparse { THINNED_OUT } else { noise(samples) };
     let sides = Sides { runs: vec![run], corners, extent, noise, sparse };
     least_expected_error(&sides).concat()
+}
+
+/// Without samples at the end that are back at the first.
+fn without_repetition(samples: &[Sample], extent: f64) -> &[Sample] {
+    let far = |sample: &Sample| sample.at.distance(samples[0].at) > REPETITION * extent;
+    &samples[..samples.iter().rposition(far).map_or(1, |last| last + 1)]
 }
 
 /// Cuts off short loops where the contour crosses itself, such as sides prolonged past each other.

@@ -164,7 +164,17 @@ fn calm(samples: &mut Vec<Sample>) {
 /// Each sample is compared with the cubic through its four neighbours. The median makes corners harmless. Of lines
 /// that were thinned out a cubic says nothing, and the answer is 0.
 pub(super) fn noise(samples: &[Sample]) -> f64 {
-    let mut squares: Vec<f64> = samples.windows(5).map(cubic_misfit).collect();
+    noise_between(samples, &[])
+}
+
+/// As [`noise`], of lines with corners known to be at some of the samples, ascending.
+pub(super) fn noise_between(samples: &[Sample], corners: &[usize]) -> f64 {
+    let smooth = |first: usize| {
+        let next = corners.partition_point(|&corner| corner < first);
+        corners.get(next).is_none_or(|&corner| corner > first + 4)
+    };
+    let fives = samples.windows(5).enumerate().filter(|(first, _)| smooth(*first));
+    let mut squares: Vec<f64> = fives.map(|(_, five)| cubic_misfit(five)).collect();
     if squares.len() < 8 || are_sparse(samples) {
         return 0.;
     }

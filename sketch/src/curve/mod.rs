@@ -9,6 +9,7 @@ mod banded;
 mod chains;
 mod closing;
 mod corners;
+mod cut_corners;
 mod fair;
 mod groups;
 mod line;
