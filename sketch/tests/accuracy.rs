@@ -45,9 +45,9 @@ const GOALS: [Goal; 11] = [
     Goal { name: "spiral", from: [1000, 1000, 1000], most: [0.5, 2.0, 4.5] },
     Goal { name: "figure of eight", from: [120, 500, 1000], most: [0.5, 1.5, 1.5] },
     Goal { name: "A", from: [120, 250, 1000], most: [0.5, 1.5, 2.0] },
-    Goal { name: "B", from: [250, 500, 1000], most: [0.5, 1.5, 3.0] },
-    Goal { name: "O", from: [30, 30, 250], most: [0.5, 1.5, 1.6] },
-    Goal { name: "R", from: [500, 250, 1000], most: [0.5, 1.5, 2.0] },
+    Goal { name: "B", from: [250, 500, 1000], most: [0.5, 1.5, 2.9] },
+    Goal { name: "O", from: [30, 30, 1000], most: [0.5, 1.5, 1.5] },
+    Goal { name: "R", from: [250, 250, 1000], most: [0.5, 1.5, 1.8] },
 ];
 
 #[test]

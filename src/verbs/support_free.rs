@@ -62,8 +62,10 @@ pub fn run(args: &SupportFreeArgs, job: &mut Job) -> Result<Report, Failure> {
         return Ok(report);
     };
     let tree = job.stage("compile", |_| Ok(bakes.compile(&scene.root)))?;
-    let meshed = meshing::mesh_tree(&args.input, &tree, cell, job)
-        .map_err(|failure| nothing_left(args, &bakes, &scene.root).unwrap_or(failure))?;
+    let meshed = meshing::mesh_tree(&args.input, &tree, cell, job).map_err(|failure| match failure {
+        Failure::Interrupted => failure,
+        Failure::Input(_) => nothing_left(args, &bakes, &scene.root).unwrap_or(failure),
+    })?;
     let attachments = match &args.input {
         path if is_scene(path) => input::attachments(path, &scene)?,
         _ => mesh::io::Attachments { title: scene.title.clone(), ..Default::default() },
