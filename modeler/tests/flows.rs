@@ -291,16 +291,35 @@ fn a_part_is_put_on_the_ground_and_mirrored() {
     assert!((both.min.x + one.max.x).abs() < 0.5 && (both.max.x - one.max.x).abs() < 0.5, "{both:?}");
 }
 
+/// The pen goes down, or is lifted.
+fn button(pos: egui::Pos2, pressed: bool) -> egui::Event {
+    let button = egui::PointerButton::Primary;
+    egui::Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE }
+}
+
+#[test]
+fn a_stroke_that_is_over_a_suggestion_before_the_frame_ends_presses_it() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 90.0));
+    let row = screen.get_by_label("Inflate").rect();
+    let (from, to) = (row.left_center() - vec2(30.0, 0.0), row.right_center() + vec2(30.0, 0.0));
+    for events in [
+        vec![egui::Event::PointerMoved(from), button(from, true), egui::Event::PointerMoved(row.center())],
+        vec![egui::Event::PointerMoved(to), button(to, false)],
+    ] {
+        screen.input_mut().events.extend(events);
+        screen.step();
+    }
+    settle(&mut screen);
+    assert!(screen.state().pad.is_empty(), "nothing is left of the sketch");
+    assert!(screen.state().solid().is_some(), "it became a solid");
+}
+
 #[test]
 fn strokes_that_a_slow_frame_gets_all_at_once_are_not_lost() {
     let mut screen = screen(None);
     let at = middle(&screen);
-    let button = |pos, pressed| egui::Event::PointerButton {
-        pos,
-        button: egui::PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
     let mut events = vec![egui::Event::PointerMoved(at), egui::Event::PointerMoved(at - vec2(300.0, 0.0))];
     for place in [at - vec2(100.0, 0.0), at + vec2(100.0, 0.0)] {
         let line: Vec<_> = circle(place, 60.0).collect();

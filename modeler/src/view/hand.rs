@@ -120,9 +120,10 @@ fn pressed_at(events: &[Event]) -> Option<egui::Pos2> {
 /// The hand takes hold of something.
 fn press(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     let pressed = |button| ui.input(|input| input.pointer.button_pressed(button));
-    let Some(at) = ui.input(|input| pressed_at(&input.events)).filter(|_| response.contains_pointer()) else {
-        return;
-    };
+    // Where the pen is by now may be over something else, if the frame was slow.
+    let is_on_paper =
+        |at: &egui::Pos2| response.rect.contains(*at) && ui.ctx().layer_id_at(*at) == Some(response.layer_id);
+    let Some(at) = ui.input(|input| pressed_at(&input.events)).filter(is_on_paper) else { return };
     let (shift, space) = ui.input(|input| (input.modifiers.shift, input.key_down(egui::Key::Space)));
     for button in [PointerButton::Secondary, PointerButton::Middle] {
         if let Some(tool) = modeler.settings.habit.drag(button, shift).filter(|_| pressed(button)) {
