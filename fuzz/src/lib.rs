@@ -24,6 +24,21 @@ pub const MEMORY: usize = 500 << 20;
 #[global_allocator]
 static ALLOCATOR: cap::Cap<std::alloc::System> = cap::Cap::new(std::alloc::System, MEMORY);
 
+/// Allows for what matrix products ask for besides [`MEMORY`], of which they touch only what they need: twice the
+/// largest cache for each thread.
+pub(crate) fn allow_for_products() {
+    static ONCE: std::sync::Once = std::sync::Once::new();
+    ONCE.call_once(|| {
+        let caches = (0..8).filter_map(|i| {
+            let path = format!("/sys/devices/system/cpu/cpu0/cache/index{i}/size");
+            std::fs::read_to_string(path).ok()?.trim().strip_suffix('K')?.parse::<usize>().ok()
+        });
+        let threads = 1 + std::thread::available_parallelism().map_or(1, usize::from);
+        let space = threads * 2 * (caches.max().unwrap_or(0) << 10);
+        ALLOCATOR.set_limit(MEMORY + space).expect("less is in use");
+    });
+}
+
 /// Makes a program that feeds bytes to a function.
 #[macro_export]
 macro_rules! target {
