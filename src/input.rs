@@ -215,20 +215,10 @@ pub fn imported_mesh(
     let hash = sha256(&mut file, ReadLimits::default().max_bytes);
     let sha256 = hash.map_err(|e| Failure::of(path, output::told(&e)))?;
     let file = match folder {
-        Some(folder) => seen_from(folder, path).map_err(|e| Failure::of(path, output::told(&e)))?,
+        Some(folder) => MeshReference::way(folder, path).map_err(|e| Failure::of(path, output::told(&e)))?,
         None => path.display().to_string(),
     };
     Ok(ImportedMesh { file, sha256, falloff, distance })
-}
-
-/// The way from a folder to a file, as scenes write it.
-fn seen_from(folder: &Path, file: &Path) -> io::Result<String> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let (folder, file) = (folder.canonicalize()?, file.canonicalize()?);
-    let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
-    let up = folder.components().skip(common).map(|_| "..".to_owned());
-    let down = file.components().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
-    Ok(up.chain(down).collect::<Vec<_>>().join("/"))
 }
 
 /// What a 3MF file made from `scene` carries beside the mesh.

@@ -2,11 +2,10 @@
 //! document's commands and through the scene's text.
 
 use blobtree::{
-    Command, Document, Drawing, DrawnPoint, DrawnStroke, Field, ISO, JournalEntry, MeshReference, NewShape,
-    Node, NodePath, NodeRef, Primitive, Scene, SceneSources, Shape, SketchPlane, Template, Tree,
+    Command, Document, Drawing, DrawingsBy, DrawnPoint, DrawnStroke, Field, ISO, JournalEntry, NewShape,
+    Node, NodePath, NodeRef, Primitive, Scene, Shape, SketchPlane, Tree,
 };
 use glam::{Vec2, Vec3};
-use mesh::MeshDistance;
 use sketch::solid::Outline;
 use sketch::stroke::{OrientedBox, Placement, Sketch, Stroke};
 use std::f32::consts::TAU;
@@ -14,19 +13,6 @@ use std::sync::Arc;
 
 /// A pixel is a mm about the origin, so that strokes come back with the same bits.
 const PLACEMENT: Placement = Placement { origin_px: Vec2::ZERO, mm_per_px: 1.0 };
-
-/// Solves the drawings of a scene that is read.
-struct Drawings;
-
-impl SceneSources for Drawings {
-    fn mesh(&mut self, _: &MeshReference) -> Result<Arc<MeshDistance>, String> {
-        Err("there are no meshes here".into())
-    }
-
-    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String> {
-        sketch::solve(drawing, falloff).map_err(|reason| reason.to_string())
-    }
-}
 
 /// A round outline of 20 mm about the origin with a bump of 1.5 mm to the right, 3 mm wide; it begins at the left.
 fn bumpy() -> DrawnStroke {
@@ -98,14 +84,14 @@ fn assert_equal_fields(a: &Scene, b: &Scene, what: &str) {
 /// That the scene, its text read again, and the journal's line repeated on the scene before give one field.
 fn assert_reads_back(document: &mut Document, line: &str) {
     let text = document.scene().to_text().expect("a scene can be written");
-    let read = Scene::from_bytes(text.as_bytes(), &mut Drawings).expect("it can be read");
+    let read = Scene::from_bytes(text.as_bytes(), &mut DrawingsBy(sketch::solve)).expect("it can be read");
     assert_eq!(strokes(&read), strokes(document.scene()), "all samples with their smoothing");
     assert_equal_fields(&read, document.scene(), "read again");
     let edited = document.scene().clone();
     document.undo().expect("there is an edit");
     let mut repeated = Document::new(document.scene().clone()).expect("legal");
-    let entry =
-        JournalEntry::from_line(line.as_bytes(), repeated.scene(), &mut Drawings).expect("a line of ours");
+    let entry = JournalEntry::from_line(line.as_bytes(), repeated.scene(), &mut DrawingsBy(sketch::solve))
+        .expect("a line of ours");
     repeated.repeat(entry).expect("it fits");
     assert_equal_fields(repeated.scene(), &edited, "repeated from the journal");
     document.redo().expect("it was undone");
@@ -170,7 +156,7 @@ fn smoothing_written_into_a_scene_file_by_hand_is_solved_when_it_is_read() {
             r#"{{"format": "trullo", "version": 1, "root": {{"type": "sweep", "length": 10,
                 "drawing": {{"strokes": [{{"points": [{points}]}}]}}}}}}"#
         );
-        Scene::from_bytes(text.as_bytes(), &mut Drawings).expect("a legal scene")
+        Scene::from_bytes(text.as_bytes(), &mut DrawingsBy(sketch::solve)).expect("a legal scene")
     };
     let reaches = [0.0, 1.0, 2.0, 4.0].map(|smoothing| reach(&scene(smoothing), 0.0));
     assert!((reaches[0] - 21.5).abs() < 0.1, "{reaches:?}");

@@ -140,8 +140,8 @@ pub use primitive::{
     Segment, Torus,
 };
 pub use scene::{
-    ColorError, MAX_DEPTH, MAX_FILE_BYTES, MAX_NODES, MAX_OBJECTS, MeshReference, NoSources, Scene,
-    SceneError, SceneProblem, SceneSources, TYPE_NAMES, TextPosition, VERSION, scene_schema,
+    ColorError, DrawingsBy, MAX_DEPTH, MAX_FILE_BYTES, MAX_NODES, MAX_OBJECTS, MeshReference, NoSources,
+    Scene, SceneError, SceneProblem, SceneSources, TYPE_NAMES, TextPosition, VERSION, scene_schema,
 };
 pub use sketched::{
     Drawing, DrawnPoint, DrawnStroke, FieldImage, Holes, Inflation, LinearSweep, PathSweep, Profile,

@@ -1,6 +1,6 @@
 //! Meshes that a scene names by their way from the scene's folder, when the scene goes to another folder.
 
-use blobtree::{Command, ImportedMesh, NewShape, NodePath, NodeRef, Primitive, Shape};
+use blobtree::{Command, ImportedMesh, MeshReference, NewShape, NodePath, NodeRef, Primitive, Shape};
 use std::io;
 use std::path::Path;
 
@@ -12,7 +12,7 @@ pub fn renamed(root: &NodeRef, from: &Path, to: &Path) -> io::Result<Vec<Command
     let mut waiting = vec![(root.clone(), NodePath::default())];
     while let Some((node, path)) = waiting.pop() {
         if let Shape::Primitive(Primitive::Mesh(mesh)) = &node.shape {
-            let file = way(to, &from.join(&mesh.file))?;
+            let file = MeshReference::way(to, &from.join(&mesh.file))?;
             if file != mesh.file {
                 let mesh = ImportedMesh { file, ..mesh.clone() };
                 commands.push(Command::SetShape { path, shape: NewShape::Primitive(Primitive::Mesh(mesh)) });
@@ -23,16 +23,6 @@ pub fn renamed(root: &NodeRef, from: &Path, to: &Path) -> io::Result<Vec<Command
         waiting.extend(children.map(|(index, child)| (child.clone(), path.child(index))));
     }
     Ok(commands)
-}
-
-/// The way from a folder to a file, as scenes write it.
-fn way(folder: &Path, file: &Path) -> io::Result<String> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let (folder, file) = (folder.canonicalize()?, file.canonicalize()?);
-    let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
-    let up = folder.components().skip(common).map(|_| "..".to_owned());
-    let down = file.components().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
-    Ok(up.chain(down).collect::<Vec<_>>().join("/"))
 }
 
 #[cfg(test)]

@@ -119,37 +119,22 @@ impl std::fmt::Debug for Trace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::{Arc, Mutex, PoisonError};
-
-    #[derive(Clone, Default)]
-    struct Paper(Arc<Mutex<Vec<u8>>>);
-
-    impl Write for Paper {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0.lock().unwrap_or_else(PoisonError::into_inner).write(bytes)
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
+    use std::io::{Read as _, Seek as _};
 
     #[test]
     fn a_wait_ends_when_the_frame_with_its_answer_is_painted() {
-        let paper = Paper::default();
-        let mut trace = Trace::new(Box::new(paper.clone()));
+        let mut file = tempfile::tempfile().expect("there is room");
+        let mut trace = Trace::new(Box::new(file.try_clone().expect("one more handle")));
         let since = Instant::now();
         let began = since + Duration::from_millis(0);
         trace.ends(Wait::DragToSolid, since, Some(Duration::from_millis(3)));
         trace.frame(began, true);
         trace.painted(Duration::from_millis(250));
         assert!(trace.write().is_none());
-        let written = paper.0.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let lines: Vec<serde_json::Value> = written
-            .split(|byte| *byte == b'\n')
-            .filter(|line| !line.is_empty())
-            .map(|line| serde_json::from_slice(line).expect("JSON"))
-            .collect();
+        let mut written = String::new();
+        file.rewind().and_then(|()| file.read_to_string(&mut written)).expect("it was written");
+        let lines: Vec<serde_json::Value> =
+            written.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
         assert_eq!(lines.len(), 2, "{lines:?}");
         assert_eq!((&lines[0]["what"], &lines[0]["ms"]), (&json!("drag_to_solid"), &json!(250.0)));
         assert_eq!(lines[0]["geometry_ms"], json!(3.0));

@@ -1,7 +1,7 @@
 //! `trullo check`.
 
 use super::values::length;
-use super::{Common, ConstraintArgs, ReadingArgs, ResolutionArgs, RuleArgs};
+use super::{Common, RuleArgs, ShapeArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -20,11 +20,7 @@ pub struct CheckArgs {
     #[arg(long, value_name = "OUT.png")]
     pub picture: Option<PathBuf>,
     #[command(flatten)]
-    pub reading: ReadingArgs,
-    #[command(flatten)]
-    pub resolution: ResolutionArgs,
-    #[command(flatten)]
-    pub constraint: ConstraintArgs,
+    pub shape: ShapeArgs,
     #[command(flatten)]
     pub common: Common,
 }

@@ -69,6 +69,17 @@ pub struct ResolutionArgs {
     pub cells: Option<u32>,
 }
 
+/// How a shape is read from a mesh's or a scene's file.
+#[derive(Debug, Args)]
+pub struct ShapeArgs {
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    #[command(flatten)]
+    pub resolution: ResolutionArgs,
+    #[command(flatten)]
+    pub constraint: ConstraintArgs,
+}
+
 /// What every verb takes.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Common {

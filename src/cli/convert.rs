@@ -1,6 +1,6 @@
 //! `trullo convert`.
 
-use super::{Common, ConstraintArgs, ReadingArgs, ResolutionArgs};
+use super::{Common, ShapeArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -12,11 +12,7 @@ pub struct ConvertArgs {
     /// The file to write: .stl, .obj, .ply, .3mf or .trullo.
     pub output: PathBuf,
     #[command(flatten)]
-    pub reading: ReadingArgs,
-    #[command(flatten)]
-    pub resolution: ResolutionArgs,
-    #[command(flatten)]
-    pub constraint: ConstraintArgs,
+    pub shape: ShapeArgs,
     #[command(flatten)]
     pub common: Common,
 }

@@ -13,7 +13,7 @@ mod tree;
 mod values;
 
 pub use check::CheckArgs;
-pub use common::{Bed, Common, ConstraintArgs, ReadingArgs, ResolutionArgs, RuleArgs};
+pub use common::{Bed, Common, ConstraintArgs, ReadingArgs, ResolutionArgs, RuleArgs, ShapeArgs};
 pub use convert::ConvertArgs;
 pub use eval::EvalArgs;
 pub use mesh::MeshArgs;

@@ -1,7 +1,7 @@
 //! `trullo slice`.
 
 use super::values::{layer_height, length};
-use super::{Bed, Common, ConstraintArgs, ReadingArgs, ResolutionArgs};
+use super::{Bed, Common, ShapeArgs};
 use clap::{Args, ValueEnum};
 use printable::LayerHeight;
 use std::path::PathBuf;
@@ -27,11 +27,7 @@ pub struct SliceArgs {
     #[arg(long, value_name = "MM", default_value = "0.1", value_parser = length)]
     pub pixel: f64,
     #[command(flatten)]
-    pub reading: ReadingArgs,
-    #[command(flatten)]
-    pub resolution: ResolutionArgs,
-    #[command(flatten)]
-    pub constraint: ConstraintArgs,
+    pub shape: ShapeArgs,
     #[command(flatten)]
     pub common: Common,
 }

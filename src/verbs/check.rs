@@ -28,11 +28,16 @@ pub fn run(args: &CheckArgs, job: &mut Job) -> Result<Report, Failure> {
         check_writable(picture)?;
     }
     let (mesh, attachments) =
-        match input::open(&args.input, args.reading.height, Prefer::Mesh, job, &mut report)? {
+        match input::open(&args.input, args.shape.reading.height, Prefer::Mesh, job, &mut report)? {
             Input::Mesh(loaded) => (loaded.mesh, loaded.attachments),
             Input::Scene(scene) => {
-                let meshed =
-                    meshing::mesh_scene(&args.input, &scene, &args.resolution, args.constraint, job)?;
+                let meshed = meshing::mesh_scene(
+                    &args.input,
+                    &scene,
+                    &args.shape.resolution,
+                    args.shape.constraint,
+                    job,
+                )?;
                 report.put("cell_mm", number(meshed.cell_mm));
                 (meshed.mesh, Attachments::default())
             }

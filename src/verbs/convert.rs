@@ -21,10 +21,11 @@ pub fn run(args: &ConvertArgs, job: &mut Job) -> Result<Report, Failure> {
     }
     check_writable(&args.output)?;
     let prefer = if to_scene { Prefer::Scene } else { Prefer::Mesh };
-    match input::open(&args.input, args.reading.height, prefer, job, &mut report)? {
+    match input::open(&args.input, args.shape.reading.height, prefer, job, &mut report)? {
         Input::Scene(scene) if to_scene => write_scene(args, &scene, job, &mut report)?,
         Input::Scene(scene) => {
-            let meshed = meshing::mesh_scene(&args.input, &scene, &args.resolution, args.constraint, job)?;
+            let meshed =
+                meshing::mesh_scene(&args.input, &scene, &args.shape.resolution, args.shape.constraint, job)?;
             let attachments = input::attachments(&args.input, &scene)?;
             meshing::write_mesh(&args.input, &args.output, &meshed.mesh, &attachments, job)?;
             tell(&mut report, &args.output, &meshed);
@@ -52,7 +53,7 @@ fn write_mesh(
     job: &mut Job,
     report: &mut Report,
 ) -> Result<(), Failure> {
-    if args.resolution.cell.is_some() || args.resolution.cells.is_some() {
+    if args.shape.resolution.cell.is_some() || args.shape.resolution.cells.is_some() {
         let what = "a mesh, which keeps its triangles; --cell and --cells are for scenes";
         return Err(Failure::of(&args.input, what));
     }

@@ -23,10 +23,10 @@ pub fn run(args: &SliceArgs, job: &mut Job) -> Result<Report, Failure> {
         true => check_writable(&args.output)?,
         false => folder::check_new(&args.output)?,
     }
-    let mesh = match input::open(&args.input, args.reading.height, Prefer::Mesh, job, &mut report)? {
+    let mesh = match input::open(&args.input, args.shape.reading.height, Prefer::Mesh, job, &mut report)? {
         Input::Mesh(loaded) => loaded.mesh,
         Input::Scene(scene) => {
-            meshing::mesh_scene(&args.input, &scene, &args.resolution, args.constraint, job)?.mesh
+            meshing::mesh_scene(&args.input, &scene, &args.shape.resolution, args.shape.constraint, job)?.mesh
         }
     };
     let slices = slicing::slice(&mesh, args.layer_height, args.bed.into(), job)?;

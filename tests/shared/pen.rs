@@ -2,12 +2,9 @@
 
 use crate::doodles::files;
 use crate::trullo;
-use blobtree::{
-    Command, Drawing, Field, MeshReference, NodeRef, Primitive, Scene, SceneSources, Shape, Template, Tree,
-};
+use blobtree::{Command, DrawingsBy, Field, NodeRef, Primitive, Scene, SceneSources, Shape, Tree};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2, vec2};
 use glam::{Vec2, Vec3};
-use mesh::MeshDistance;
 use modeler::Modeler;
 use modeler::camera::Camera;
 use modeler::desk::{Desk, Opened, Purpose};
@@ -36,18 +33,6 @@ const SAME: f32 = 0.01;
 /// How fast the hand is, points a second.
 const SPEED: f32 = 150.0;
 
-struct Solver;
-
-impl SceneSources for Solver {
-    fn mesh(&mut self, _: &MeshReference) -> Result<Arc<MeshDistance>, String> {
-        Err("no meshes here".into())
-    }
-
-    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String> {
-        sketch::solve(drawing, falloff).map_err(|reason| reason.to_string())
-    }
-}
-
 /// No files at all.
 struct NoDesk;
 
@@ -57,7 +42,7 @@ impl Desk for NoDesk {
     }
 
     fn sources<'a>(&'a mut self, _: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
-        Box::new(Solver)
+        Box::new(DrawingsBy(sketch::solve))
     }
 
     fn export(&mut self, _: &Scene, _: &Path, _: Option<f32>) -> Result<String, String> {
@@ -254,7 +239,7 @@ fn a_hundred_drawings_played_with_the_pen_are_the_scenes_of_the_command_line() {
             continue;
         }
         let bytes = std::fs::read(&output).expect("it was written");
-        let scene = Scene::from_bytes(&bytes, &mut Solver).expect("a legal scene");
+        let scene = Scene::from_bytes(&bytes, &mut DrawingsBy(sketch::solve)).expect("a legal scene");
         let root = &scene.root;
         let is_wrapped = matches!(root.shape, Shape::Operator(..)) && root.children().len() == 1;
         let wanted = if is_wrapped { root.children()[0].clone() } else { root.clone() };

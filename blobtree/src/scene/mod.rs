@@ -26,7 +26,9 @@ use mesh::MeshDistance;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::Read;
+use std::fmt::Display;
+use std::io::{self, Read};
+use std::path::Path;
 use std::sync::Arc;
 
 pub(crate) use check::measure;
@@ -170,6 +172,20 @@ fn five() -> f32 {
     5.0
 }
 
+impl MeshReference {
+    /// The way from a scene's folder to a mesh's file, as [`Self::file`] has it.
+    ///
+    /// Errors: a file or a folder that is not there.
+    pub fn way(folder: &Path, file: &Path) -> io::Result<String> {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let (folder, file) = (folder.canonicalize()?, file.canonicalize()?);
+        let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
+        let up = folder.components().skip(common).map(|_| "..".to_owned());
+        let down = file.components().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
+        Ok(up.chain(down).collect::<Vec<_>>().join("/"))
+    }
+}
+
 impl From<&ImportedMesh> for MeshReference {
     fn from(mesh: &ImportedMesh) -> Self {
         Self { file: mesh.file.clone(), sha256: mesh.sha256.clone(), falloff: mesh.falloff }
@@ -201,6 +217,24 @@ impl SceneSources for NoSources {
 
     fn template(&mut self, _: &Drawing, _: Option<f32>) -> Result<Arc<Template>, String> {
         Err("drawings are not read here".into())
+    }
+}
+
+/// For scenes without meshes: their drawings are solved by this function.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawingsBy<F>(pub F);
+
+impl<F, E> SceneSources for DrawingsBy<F>
+where
+    F: FnMut(&Drawing, Option<f32>) -> Result<Arc<Template>, E>,
+    E: Display,
+{
+    fn mesh(&mut self, reference: &MeshReference) -> Result<Arc<MeshDistance>, String> {
+        NoSources.mesh(reference)
+    }
+
+    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String> {
+        (self.0)(drawing, falloff).map_err(|reason| reason.to_string())
     }
 }
 

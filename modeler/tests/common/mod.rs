@@ -3,11 +3,10 @@
 // Each test file uses its own part of this.
 #![allow(dead_code)]
 
-use blobtree::{Drawing, MeshReference, Scene, SceneSources, Template};
+use blobtree::{DrawingsBy, Scene, SceneSources};
 use egui::{Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use mesh::MeshDistance;
 use modeler::Modeler;
 use modeler::desk::{Desk, Opened, Purpose};
 use modeler::stage::NoStage;
@@ -20,18 +19,6 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Default)]
 pub struct TestDesk;
 
-struct Solver;
-
-impl SceneSources for Solver {
-    fn mesh(&mut self, _: &MeshReference) -> Result<Arc<MeshDistance>, String> {
-        Err("no meshes here".into())
-    }
-
-    fn template(&mut self, drawing: &Drawing, falloff: Option<f32>) -> Result<Arc<Template>, String> {
-        sketch::solve(drawing, falloff).map_err(|reason| reason.to_string())
-    }
-}
-
 impl Desk for TestDesk {
     fn open(&mut self, path: &Path) -> Result<Opened, String> {
         let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -40,12 +27,12 @@ impl Desk for TestDesk {
                 read(&bytes, FileFormat::Strokes, &DoodleChoice::default()).map_err(|e| e.to_string())?;
             return Ok(Opened::Drawing(Sketch::from_strokes(&strokes)));
         }
-        let scene = Scene::from_bytes(&bytes, &mut Solver).map_err(|e| e.to_string())?;
+        let scene = Scene::from_bytes(&bytes, &mut DrawingsBy(sketch::solve)).map_err(|e| e.to_string())?;
         Ok(Opened::Scene(scene, Vec::new()))
     }
 
     fn sources<'a>(&'a mut self, _: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
-        Box::new(Solver)
+        Box::new(DrawingsBy(sketch::solve))
     }
 
     fn export(&mut self, _: &Scene, path: &Path, _: Option<f32>) -> Result<String, String> {
