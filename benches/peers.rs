@@ -4,8 +4,8 @@
 //! `cargo bench --bench peers [-- eval|mesh|edit]`; `REPS` sets the rounds (15).
 
 use blobtree::{
-    Aabb, BRICK, BRICK_SAMPLES, Brick, Field, NoSources, Node, NodeRef, Scene, Shape, Transform, Tree, Warp,
-    changed_region,
+    Aabb, BRICK, BRICK_SAMPLES, Brick, ChangedPlaces, Field, NoSources, Node, NodeRef, Scene, Shape,
+    Transform, Tree, Warp,
 };
 use glam::Vec3;
 use polygonizer::{CellSize, Options, Surface};
@@ -166,10 +166,10 @@ fn edit(name: &str, n: u16) {
             let mut times: Vec<f64> = (0..Tree::new(&before).primitives())
                 .map(|number| {
                     let after = with_primitive_moved(&before, &mut Some(number), Vec3::new(0.02, 0.01, 0.015));
-                    let dirty = || changed_region(&before, &after);
+                    let dirty = || ChangedPlaces::between(&before, &after);
                     let updated = || {
                         let mut updated = surface.clone();
-                        updated.update(&Tree::new(&after), dirty(), &options).expect("it follows");
+                        updated.update(&Tree::new(&after), &dirty(), &options).expect("it follows");
                         updated
                     };
                     assert!(number % 10 != 0 || updated() == build(&after), "an update differs from a fresh surface");

@@ -6,8 +6,8 @@ mod geometry;
 
 use blobtree::random::RandomTree;
 use blobtree::{
-    CachePolicy, CacheStore, Change, Command, Document, NewShape, Node, NodePath, NodeRef, Primitive, Scene,
-    Shape, Tree, changed_region,
+    CachePolicy, CacheStore, Change, ChangedPlaces, Command, Dirty, Document, NewShape, Node, NodePath,
+    NodeRef, Primitive, Scene, Shape, Tree, changed_region,
 };
 use fastrand::Rng;
 use geometry::*;
@@ -158,9 +158,9 @@ fn after_random_edits_the_updated_surface_equals_a_fresh_one() {
             let change = edit(&mut document, &mut rng, &mut random, followed.triangle_count() == 0);
             let name = format!("{name}, edit {n} ({})", change.name);
             let tree = Tree::new(&change.after);
-            let dirty = changed_region(&change.before, &change.after);
+            let dirty = ChangedPlaces::between(&change.before, &change.after);
             let fresh = on_threads(1, || surface(&tree, mm));
-            on_threads(2, || followed.update(&tree, dirty, &Options::default()))
+            on_threads(2, || followed.update(&tree, &dirty, &Options::default()))
                 .unwrap_or_else(|e| panic!("{name}: {e}"));
             assert_same(&followed.mesh(), &fresh.mesh(), &name);
             assert!(followed == fresh, "{name}: equal meshes, other normals or kinds of vertices");
@@ -193,9 +193,9 @@ fn a_drag_of_many_small_steps_equals_a_fresh_surface_at_its_end() {
             let Ok(change) = document.apply(Command::SetShape { path: path.clone(), shape }) else {
                 continue;
             };
-            let dirty = changed_region(&change.before, &change.after);
+            let dirty = ChangedPlaces::between(&change.before, &change.after);
             followed
-                .update(&Tree::new(&change.after), dirty, &Options::default())
+                .update(&Tree::new(&change.after), &dirty, &Options::default())
                 .unwrap_or_else(|e| panic!("{name}: {e}"));
         }
         let fresh = surface(&Tree::new(&document.scene().root), mm);
@@ -226,7 +226,7 @@ fn through_caches_an_updated_surface_equals_a_fresh_one_through_the_same_caches(
             let Ok(change) = document.apply(command) else { continue };
             let tree = store.tree(&change.after);
             let dirty = changed_region(&change.before, &change.after);
-            followed.update(&tree, dirty, &Options::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
+            followed.update(&tree, &dirty, &Options::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
             let fresh = surface(&tree, mm);
             assert_same(&followed.mesh(), &fresh.mesh(), &format!("{name}, edit {n} ({})", change.name));
         }
@@ -253,11 +253,12 @@ fn an_edit_far_away_leaves_every_brick_alone() {
     let Shape::Operator(_, children) = &mut after.shape else { unreachable!("a union") };
     children[1] = blobtree::build::point([200.0, 1.0, 0.0], 5.0).into();
     let after: NodeRef = after.into();
-    let dirty = changed_region(&before, &after);
-    assert!(!dirty.contains(Vec3::ZERO) && dirty.contains(Vec3::new(200.0, 0.0, 0.0)));
+    let dirty = ChangedPlaces::between(&before, &after);
+    let bounds = dirty.bounds();
+    assert!(!bounds.contains(Vec3::ZERO) && bounds.contains(Vec3::new(200.0, 0.0, 0.0)));
     let mut followed: Surface = surface(&Tree::new(&before), 0.5);
     let far: Vec<_> = followed.bricks().filter(|key| key[0] > 10).collect();
     let changes =
-        followed.update(&Tree::new(&after), dirty, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
+        followed.update(&Tree::new(&after), &dirty, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
     assert!(!far.is_empty() && changes.changed.iter().chain(&changes.removed).all(|key| key[0] > 10));
 }

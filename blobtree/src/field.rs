@@ -89,6 +89,26 @@ impl Aabb {
     }
 }
 
+/// A part of space that holds every place where a field may have changed.
+pub trait Dirty: Sync {
+    /// A box around it, mm.
+    fn bounds(&self) -> Aabb;
+
+    /// A test, with scratch memory of its own, whether boxes have anything in common with it. May answer yes too
+    /// often, never no.
+    fn touch(&self) -> Box<dyn FnMut(&Aabb) -> bool + '_>;
+}
+
+impl Dirty for Aabb {
+    fn bounds(&self) -> Aabb {
+        *self
+    }
+
+    fn touch(&self) -> Box<dyn FnMut(&Aabb) -> bool + '_> {
+        Box::new(|region| region.overlaps(self))
+    }
+}
+
 /// A closed range of field values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {

@@ -120,7 +120,7 @@ mod warp;
 mod warp_map;
 
 pub use cache::{CachePolicy, CacheStore};
-pub use changes::changed_region;
+pub use changes::{ChangedPlaces, changed_region};
 pub use checks::ParameterError;
 pub use document::{
     Change, Command, CommandError, DEFAULT_OLDER_VERSIONS, Document, HISTORY_LIMIT, JournalEntry, NewShape,
@@ -129,7 +129,7 @@ pub use document::{
 pub use eval::{Tree, support};
 pub use explain::{Part, explain, explain_in};
 pub use extent::solid_box;
-pub use field::{Aabb, BRICK, BRICK_SAMPLES, Brick, Field, ISO, Interval, Sample, Sampler};
+pub use field::{Aabb, BRICK, BRICK_SAMPLES, Brick, Dirty, Field, ISO, Interval, Sample, Sampler};
 pub use imported::ImportedMesh;
 pub use node::{Color, Node, NodePath, NodePathError, NodeRef, Shape};
 pub use operator::{Operator, Sharpness};

@@ -61,6 +61,13 @@ impl Node {
         !self.muted && !self.construction
     }
 
+    /// Whether it is support-free or stands above a node that is, so that its field depends on a bake.
+    pub(crate) fn holds_support_free(&self) -> bool {
+        self.is_heard()
+            && (matches!(self.shape, Shape::SupportFree(..))
+                || self.children().iter().any(|child| child.holds_support_free()))
+    }
+
     /// The name in scene files and on screen of what the node is.
     pub fn type_name(&self) -> &'static str {
         match &self.shape {

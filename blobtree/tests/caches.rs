@@ -3,8 +3,8 @@
 use blobtree::build::{Build, cuboid, cylinder, point, sum, union};
 use blobtree::random::RandomTree;
 use blobtree::{
-    Aabb, BRICK_SAMPLES, Brick, CachePolicy, CacheStore, Field, ISO, ImportedMesh, Node, NodeRef, Primitive,
-    Shape, Tree, changed_region,
+    Aabb, BRICK_SAMPLES, Brick, CachePolicy, CacheStore, ChangedPlaces, Dirty, Field, ISO, ImportedMesh,
+    Node, NodeRef, Primitive, Shape, Tree, changed_region,
 };
 use fastrand::Rng;
 use glam::Vec3;
@@ -176,7 +176,9 @@ fn an_imported_mesh_is_searched_a_second_time_only_where_samples_cannot_serve() 
 }
 
 #[test]
-fn edits_are_not_felt_outside_the_changed_region() {
+fn edits_are_not_felt_outside_the_changed_places() {
+    let within = Aabb::around(Vec3::ZERO, Vec3::splat(120.0));
+    let (mut boxes, mut touched) = (0, 0);
     for seed in 0..300 {
         let mut random = RandomTree::new(seed);
         random.depth = 4;
@@ -187,10 +189,33 @@ fn edits_are_not_felt_outside_the_changed_region() {
         let (a, b) = (Tree::new(&old), Tree::new(&new));
         let mut rng = Rng::with_seed(seed);
         for _ in 0..300 {
-            let p = point_in(&mut rng, &Aabb::around(Vec3::ZERO, Vec3::splat(120.0)));
+            let p = point_in(&mut rng, &within);
             assert!(changed.contains(p) || a.value(p) == b.value(p), "seed {seed} at {p}: {changed:?}");
         }
+        let places = ChangedPlaces::between(&old, &new);
+        assert_eq!(places.bounds(), changed);
+        let mut touch = places.touch();
+        let near = changed.intersection(&within);
+        if near.is_empty() {
+            continue;
+        }
+        for _ in 0..100 {
+            let half = Vec3::splat(10.0 * rng.f32());
+            let region = Aabb::around(point_in(&mut rng, &near), half);
+            boxes += 1;
+            if touch(&region) {
+                touched += 1;
+                continue;
+            }
+            for _ in 0..20 {
+                let p = point_in(&mut rng, &region);
+                let [a, b] = [&a, &b].map(|tree| tree.sample(p));
+                assert_eq!((a.value, a.gradient), (b.value, b.gradient), "seed {seed} at {p} in {region:?}");
+            }
+        }
     }
+    println!("{touched} of {boxes} boxes in the changed regions are touched");
+    assert!(touched * 10 < boxes * 9, "{touched} of {boxes}: the places are no better than their box");
 }
 
 fn some_leaf(root: &NodeRef, seed: u64) -> Option<Vec<usize>> {

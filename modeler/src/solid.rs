@@ -5,7 +5,7 @@
 
 use crate::desk::Bake;
 use crate::newest::{Answering, Newest};
-use blobtree::{Aabb, BakeStore, Field, NodeRef, Palette, Tree, changed_region};
+use blobtree::{Aabb, BakeStore, ChangedPlaces, Field, NodeRef, Palette, Tree};
 use glam::Vec3;
 use polygonizer::{Cancel, CellSize, Options, Surface, VertexKind};
 use rayon::prelude::*;
@@ -216,8 +216,8 @@ impl Level {
         });
         let surface = match kept {
             Some((before, mut surface)) => {
-                let dirty = changed_region(&before, root);
-                match surface.update(tree, dirty, &options) {
+                let dirty = ChangedPlaces::between(&before, root);
+                match surface.update(tree, &dirty, &options) {
                     Ok(_) => surface,
                     Err(_) => {
                         // An update that was stopped changes nothing, so the next one starts from here again.

@@ -34,21 +34,21 @@ impl Surface {
         self.cut_entries(&all);
     }
 
-    /// The later phases after a change of phase one in the bricks with keys `touched`, and of the field within
-    /// `dirty`: each for the bricks that see something different, as far as the differences spread. Returns the
+    /// The later phases after a change of phase one in the bricks with keys `touched`, and of the field in the boxes that
+    /// `touch` says: each for the bricks that see something different, as far as the differences spread. Returns the
     /// keys of all that are different now.
     pub(crate) fn finish_around(
         &mut self,
         field: &dyn Field,
         touched: &[BrickKey],
-        dirty: Aabb,
+        touch: &mut dyn FnMut(&Aabb) -> bool,
     ) -> Vec<BrickKey> {
         let mut unsettled = touched.to_vec();
         unsettled.extend(self.settle_alone(&self.entries_near(touched, ALL)));
         let mut moved = touched.to_vec();
         moved.extend(self.settle_together(&self.entries_near(&unsettled, ALL)));
         let stitched = self.stitch_entries(&self.entries_near(&moved, NEXT));
-        let felt = (0..self.bricks.len()).filter(|&i| self.bricks[i].seen.overlaps(&dirty));
+        let felt = (0..self.bricks.len()).filter(|&i| touch(&self.bricks[i].seen));
         let mut splitting = self.entries_near(&moved, ALL);
         splitting.extend(self.entries_near(&stitched, PREVIOUS));
         splitting.extend(felt);

@@ -41,7 +41,7 @@
 //! # fn tour(field: &dyn Field, edited: &dyn Field, dirty: Aabb) -> Result<(), PolygonizeError> {
 //! let cell = CellSize::from_mm(0.5)?;
 //! let mut surface = Surface::build(field, cell, &Options::default())?;
-//! let changes = surface.update(edited, dirty, &Options::default())?;
+//! let changes = surface.update(edited, &dirty, &Options::default())?;
 //! for &brick in &changes.changed {
 //!     show(&surface.chunk(brick));
 //! }

@@ -21,7 +21,8 @@ const LEAST_AREA: f32 = 1e-5;
 
 /// How close to the outward normals at its corners the normal of a piece must be, as a dot product. On the
 /// sharpest edge that is kept whole, that of a wedge of 23°, normals are means and have 0.2. With 0.3, twice as
-/// much of a box's edges is lost; with 0.1, a few more pieces cross where sheets are closer than a cell.
+/// much of a box's edges is lost; with 0.1, a few more pieces cross where sheets are closer than a cell. Corners do
+/// not tell: the cell of one that was found along an edge need not see all of its faces.
 const AGREEMENT: f32 = 0.1;
 
 /// How far an edge may be from the lines that are asked about, in cells: they see no more of the field.
@@ -230,6 +231,7 @@ fn may_be_cut(corners: [Vertex; 3], middles: [Option<Vertex>; 3], spacing: f32) 
     let unused = corners[0];
     let all: [Vertex; 6] =
         std::array::from_fn(|i| if i < 3 { corners[i] } else { middles[i - 3].unwrap_or(unused) });
+    let is_corner = |i: usize| all[i].kind == VertexKind::Corner;
     let is_sound = |piece: [usize; 3]| {
         let [a, b, c] = piece.map(|i| all[i].position);
         let normal = (b - a).cross(c - a);
@@ -237,7 +239,7 @@ fn may_be_cut(corners: [Vertex; 3], middles: [Option<Vertex>; 3], spacing: f32) 
         let longest2 = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
         twice > LEAST_HEIGHT * longest2
             && twice > 2.0 * LEAST_AREA * spacing * spacing
-            && piece.iter().all(|&i| all[i].normal.dot(normal) > AGREEMENT * twice)
+            && piece.iter().all(|&i| is_corner(i) || all[i].normal.dot(normal) > AGREEMENT * twice)
     };
     let present = middles.map(|m| m.is_some());
     (1..8).all(|some: usize| {

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use blobtree::{Aabb, Field};
+use blobtree::{Aabb, Dirty, Field};
 use glam::Vec3;
 use mesh::Mesh;
 use rayon::prelude::*;
@@ -58,6 +58,9 @@ pub(crate) struct Entry {
     pub triangles: Arc<Vec<[VertexRef; 3]>>,
 }
 
+/// A test whether boxes have anything in common with what changed.
+type Touch<'a> = Box<dyn FnMut(&Aabb) -> bool + 'a>;
+
 /// What [`Surface::update`] did, as keys of bricks, each list in ascending order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
@@ -100,20 +103,20 @@ impl Surface {
     /// Follows `field` after an edit that it can be felt in `dirty` only: then the surface equals a fresh
     /// one, bit for bit.
     ///
-    /// - **In:** `dirty` must hold every point where values *or* bounds changed, so old and new box of what
-    ///   was edited.
+    /// - **In:** `dirty` must hold every point where values *or* bounds changed: [`blobtree::ChangedPlaces`], or a
+    ///   box around what was edited, before and after.
     /// - **Errors:** as [`Self::build`]; the surface is unchanged then.
-    /// - **Cost:** proportional to the bricks in `dirty`.
+    /// - **Cost:** proportional to the bricks that `dirty` touches.
     pub fn update(
         &mut self,
         field: &dyn Field,
-        dirty: Aabb,
+        dirty: &dyn Dirty,
         options: &Options,
     ) -> Result<Changes, PolygonizeError> {
         let lattice = self.lattice();
         let made = match bricks_of(field, self.cell)? {
             Some(all) => {
-                let within = dirty.intersection(&lattice.region_of(all));
+                let within = dirty.bounds().intersection(&lattice.region_of(all));
                 if within.is_empty() {
                     Vec::new()
                 } else {
@@ -209,12 +212,12 @@ impl Surface {
         Lattice { spacing: self.cell.mm() }
     }
 
-    /// Phase one for all bricks in `range`, or those of them that `dirty` can touch.
+    /// Phase one for all bricks in `range`, or those of them that `dirty` touches.
     fn make_bricks(
         &self,
         field: &dyn Field,
         range: BrickRange,
-        dirty: Option<Aabb>,
+        dirty: Option<&dyn Dirty>,
         options: &Options,
     ) -> Result<Vec<(BrickKey, BrickSurface)>, PolygonizeError> {
         let lattice = self.lattice();
@@ -222,7 +225,7 @@ impl Surface {
         let tasks = blocks.len() * BRICKS_PER_BLOCK;
         let triangles = AtomicUsize::new(0);
         let done = AtomicUsize::new(0);
-        let make = |worker: &mut Worker, task: usize| {
+        let make = |(worker, touch): &mut (Worker, Option<Touch>), task: usize| {
             if options.is_cancelled() {
                 return Err(PolygonizeError::Cancelled);
             }
@@ -233,7 +236,7 @@ impl Surface {
             let Some(key) = range.in_block(blocks[task / BRICKS_PER_BLOCK], task % BRICKS_PER_BLOCK) else {
                 return Ok(None);
             };
-            if dirty.is_some_and(|dirty| !lattice.apron(key).overlaps(&dirty)) {
+            if touch.as_mut().is_some_and(|touch| !touch(&lattice.apron(key))) {
                 return Ok(None);
             }
             let Some(brick) = worker.make(key) else { return Ok(None) };
@@ -247,19 +250,26 @@ impl Surface {
             }
             Ok(Some((key, brick)))
         };
-        let mut made = run_tasks(tasks, GRAIN, || Worker::new(field.sampler(), lattice), make)?;
+        let worker = || (Worker::new(field.sampler(), lattice), dirty.map(Dirty::touch));
+        let mut made = run_tasks(tasks, GRAIN, worker, make)?;
         made.par_sort_unstable_by_key(|(key, _)| *key);
         Ok(made)
     }
 
-    /// Puts `made` in the place of all bricks that `dirty` can touch, then the other phases where it matters.
-    fn replace(&mut self, field: &dyn Field, made: Vec<(BrickKey, BrickSurface)>, dirty: Aabb) -> Changes {
+    /// Puts `made` in the place of all bricks that `dirty` touches, then the other phases where it matters.
+    fn replace(
+        &mut self,
+        field: &dyn Field,
+        made: Vec<(BrickKey, BrickSurface)>,
+        dirty: &dyn Dirty,
+    ) -> Changes {
         let lattice = self.lattice();
+        let mut touch = dirty.touch();
         let mut made: BTreeMap<_, _> = made.into_iter().collect();
         let mut changes = Changes::default();
         let mut touched = Vec::new();
         self.bricks.retain_mut(|entry| {
-            if !lattice.apron(entry.key).overlaps(&dirty) {
+            if !touch(&lattice.apron(entry.key)) {
                 return true;
             }
             match made.remove(&entry.key) {
@@ -279,7 +289,7 @@ impl Surface {
         self.bricks.extend(made.into_iter().map(|(key, brick)| Entry::new(key, brick)));
         self.bricks.sort_unstable_by_key(|entry| entry.key);
         touched.extend(&changes.removed);
-        changes.changed = self.finish_around(field, &touched, dirty);
+        changes.changed = self.finish_around(field, &touched, &mut *touch);
         changes
     }
 

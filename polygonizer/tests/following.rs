@@ -49,7 +49,7 @@ fn after_random_edits_an_updated_surface_equals_a_fresh_one_exactly() {
             // The box of a difference is that of its first part, so the first edit may touch all.
             let dirty = if i == 0 { Aabb::around(Vec3::ZERO, Vec3::splat(1e6)) } else { dirty };
             let old = surface.clone();
-            let changes = surface.update(&field, dirty, &options).expect("small");
+            let changes = surface.update(&field, &dirty, &options).expect("small");
             let fresh = Surface::build(&field, size, &options).expect("small");
             assert!(surface == fresh, "seed {seed}, edit {edit}: the update differs");
             assert_eq!(surface.mesh(), fresh.mesh());
@@ -71,12 +71,12 @@ fn an_update_with_too_small_a_box_does_no_harm_that_the_next_cannot_mend() {
         let mut surface = Surface::build(&body(&parts), cell(0.4), &Options::default()).expect("small");
         let others: Vec<_> = (0..5).map(|_| random_part(&mut random)).collect();
         let too_small = Aabb::around(random.point(5.0), Vec3::splat(random.between(0.1, 5.0)));
-        surface.update(&body(&others), too_small, &Options::default()).expect("small");
+        surface.update(&body(&others), &too_small, &Options::default()).expect("small");
         assert_eq!(surface.bricks().map(|key| surface.chunk(key).mesh.triangles.len()).sum::<usize>(), {
             surface.mesh().triangles.len()
         });
         let everywhere = Aabb::around(Vec3::ZERO, Vec3::splat(1e6));
-        surface.update(&body(&others), everywhere, &Options::default()).expect("small");
+        surface.update(&body(&others), &everywhere, &Options::default()).expect("small");
         let fresh = Surface::build(&body(&others), cell(0.4), &Options::default()).expect("small");
         assert!(surface == fresh, "seed {seed}: the update differs");
     }
@@ -116,7 +116,7 @@ fn a_cancelled_update_leaves_the_surface_as_it_was() {
     cancel.cancel();
     let cancelled = Options { cancel: Some(&cancel), ..options };
     let other = ball(Vec3::X, 5.0);
-    assert_eq!(surface.update(&other, other.support(), &cancelled), Err(PolygonizeError::Cancelled));
+    assert_eq!(surface.update(&other, &other.support(), &cancelled), Err(PolygonizeError::Cancelled));
     assert!(surface == before);
     assert_eq!(Surface::build(&other, cell(0.2), &cancelled), Err(PolygonizeError::Cancelled));
 }

@@ -60,7 +60,7 @@ fn turned_boxes_keep_all_corners_and_nearly_all_of_their_edges() {
     let share = cut_off.len() as f32 / points as f32;
     println!("worst corner {worst_corner} cells; {:.3} % of edges cut off: {cut_off:?}", 100.0 * share);
     // What is left are triangles that join the edges that meet in a corner, past that corner. The goal is none.
-    assert!(share < 0.001, "{share} of all edge points are off: {cut_off:?}");
+    assert!(share < 8e-4, "{share} of all edge points are off: {cut_off:?}");
     assert!(cut_off.iter().all(|(off, _)| *off < 0.4), "{cut_off:?}");
 }
 

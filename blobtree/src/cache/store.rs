@@ -122,7 +122,7 @@ impl CacheStore {
         let mut above = above;
         if self.caches.contains_key(&key) {
             above = cost;
-        } else if !is_csg(node) && is_part && cost <= above / 4 && !holds_support_free(node) {
+        } else if !is_csg(node) && is_part && cost <= above / 4 && !node.holds_support_free() {
             let cache = self.fresh(node, older);
             self.caches.insert(key, (Arc::downgrade(node), Arc::new(cache)));
             above = cost;
@@ -157,13 +157,6 @@ impl CacheStore {
 fn is_csg(node: &Node) -> bool {
     use Operator::{Difference, Intersection, Union};
     matches!(node.shape, Shape::Operator(Union | Intersection | Difference, _))
-}
-
-/// Whether the node is support-free or stands above one that is, so that its field depends on a bake.
-fn holds_support_free(node: &Node) -> bool {
-    node.is_heard()
-        && (matches!(node.shape, Shape::SupportFree(..))
-            || node.children().iter().any(|c| holds_support_free(c)))
 }
 
 /// What evaluating a node costs, in point primitives.

@@ -136,7 +136,7 @@ impl Look {
     pub fn follow(&mut self, rebaker: &Rebaker, tree: &Tree, group: &[Spot]) -> Result<bool, BakeError> {
         let cell = self.surface.cell().mm();
         for spot in group {
-            let Some(changes) = meshed(self.surface.update(tree, spot.dirty, &options(rebaker)))? else {
+            let Some(changes) = meshed(self.surface.update(tree, &spot.dirty, &options(rebaker)))? else {
                 return Ok(false);
             };
             for key in changes.changed.iter().chain(&changes.removed) {
