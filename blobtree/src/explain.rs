@@ -126,7 +126,9 @@ fn shares(operator: Operator, samples: &[Sample], heard: &[bool]) -> Vec<f32> {
         Operator::Intersection => decided_by(best(&values, heard, |a, b| a < b), values.len()),
         Operator::Difference => {
             let cuts: Vec<bool> = heard.iter().enumerate().map(|(i, heard)| *heard && i > 0).collect();
-            let cut = best(&values, &cuts, |a, b| a > b).filter(|i| 1.0 - values[*i] < values[0]);
+            // What is cut off does not reach where it is 0, though the difference is never above 1.
+            let cut = best(&values, &cuts, |a, b| a > b);
+            let cut = cut.filter(|i| values[*i] > 0.0 && 1.0 - values[*i] < values[0]);
             decided_by(cut.or((!values.is_empty()).then_some(0)), values.len())
         }
         Operator::Blend(s) => values.iter().map(|f| power(*f, s.get())).collect(),

@@ -20,7 +20,7 @@ const fn with(modifiers: Modifiers, key: Key, help: &'static str, run: fn(&mut M
 }
 
 /// All keys, in the order of the help.
-pub const BINDINGS: [Binding; 29] = [
+pub const BINDINGS: [Binding; 30] = [
     with(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z, "do again what was undone", Modeler::redo),
     with(Modifiers::COMMAND, Key::Y, "do again what was undone", Modeler::redo),
     with(Modifiers::COMMAND, Key::Z, "undo the last stroke or step", Modeler::undo),
@@ -38,6 +38,7 @@ pub const BINDINGS: [Binding; 29] = [
     with(Modifiers::NONE, Key::P, "select the parent", Modeler::select_parent),
     with(Modifiers::NONE, Key::M, "mirror to the other side", Modeler::mirror_selected),
     with(Modifiers::NONE, Key::G, "put on the ground", Modeler::ground_selected),
+    with(Modifiers::NONE, Key::L, "the field lens: what makes the value at a place", Modeler::toggle_lens),
     with(Modifiers::NONE, Key::F, "see everything", |m| m.camera.show(m.bounds())),
     with(Modifiers::NONE, Key::D, "draw", |m| m.settings.tool = Tool::Draw),
     with(Modifiers::NONE, Key::E, "erase", |m| m.settings.tool = Tool::Erase),

@@ -17,6 +17,7 @@ pub mod form;
 mod ground;
 pub mod journal;
 pub mod keys;
+pub mod lens;
 pub mod lesson;
 mod meshes;
 mod modeler;

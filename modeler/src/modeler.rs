@@ -8,6 +8,7 @@ use crate::desk::Desk;
 use crate::dialog::Dialog;
 use crate::expecting::{Asked, Thinker, Thought};
 use crate::form::Form;
+use crate::lens::Lens;
 use crate::lesson::Lesson;
 use crate::node_box::NodeBox;
 use crate::notices::Notices;
@@ -42,6 +43,8 @@ pub struct Modeler {
     pub dialog: Option<Dialog>,
     /// What the user is being taught.
     pub lesson: Option<Lesson>,
+    /// The field lens, while it is wanted.
+    pub lens: Option<Lens>,
     /// Whether the user has selected what is selected. What is new is selected, too, but sketches mean the whole model
     /// then.
     selected_by_hand: bool,
@@ -69,6 +72,8 @@ pub struct Modeler {
     /// The tree of which the solid was asked for last.
     asked: Option<NodeRef>,
     thinker: Thinker,
+    /// Called when a background thread has something to show.
+    wake: Arc<dyn Fn() + Send + Sync>,
     /// Where sessions are kept; nowhere in tests that do not want them.
     sessions: Option<PathBuf>,
 }
@@ -97,6 +102,7 @@ impl Modeler {
             notices,
             dialog: None,
             lesson: None,
+            lens: None,
             selected_by_hand: false,
             desk,
             trace: None,
@@ -111,7 +117,8 @@ impl Modeler {
             solids,
             solid: None,
             asked: None,
-            thinker: Thinker::start(wake)?,
+            thinker: Thinker::start(wake.clone())?,
+            wake,
             sessions,
         })
     }
@@ -164,7 +171,8 @@ impl Modeler {
         let is_newest = |found| self.thinker.is_newest(found);
         let sketched = self.pad.sketch().is_empty() || self.pad.expectations.as_ref().is_some_and(is_newest);
         let asked = self.asked.as_ref().is_some_and(|root| NodeRef::ptr_eq(root, &self.bench.shown().root));
-        sketched && asked && self.solids.is_done(self.solid.as_deref())
+        let seen = self.lens.as_ref().is_none_or(Lens::is_at_rest);
+        sketched && asked && seen && self.solids.is_done(self.solid.as_deref())
     }
 
     /// The knobs in the view: what they say, and where they are, in points of the view.
@@ -191,6 +199,9 @@ impl Modeler {
                 self.view.shows_new = false;
             }
             self.solid = Some(Arc::new(solid));
+        }
+        if let Some(lens) = &mut self.lens {
+            lens.hear();
         }
         let thoughts: Vec<_> = self.thinker.thoughts().collect();
         for thought in thoughts {
@@ -236,6 +247,10 @@ impl Modeler {
             let asking = if self.bench.is_dragged() { Asking::Drag } else { self.asking };
             self.solids.ask(root, asking, self.now);
             self.asking = Asking::Other;
+        }
+        let bounds = self.bounds();
+        if let Some(lens) = &mut self.lens {
+            lens.look(&self.bench.shown().root, bounds);
         }
     }
 
@@ -382,6 +397,20 @@ impl Modeler {
         if let Some(bounds) = self.selected_box() {
             self.place(Motion::Move(Vec3::new(0.0, 0.0, -bounds.min.z)), true);
         }
+    }
+
+    /// Takes up the field lens, or puts it away.
+    pub fn toggle_lens(&mut self) {
+        self.lens = match self.lens.take() {
+            Some(_) => None,
+            None => match Lens::new(self.wake.clone()) {
+                Ok(lens) => Some(lens),
+                Err(error) => {
+                    self.notices.warn(format!("The field lens cannot be used now: {error}"));
+                    None
+                }
+            },
+        };
     }
 
     /// Shows what is selected moved, or moves it if the hand has let go.

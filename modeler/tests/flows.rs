@@ -118,6 +118,37 @@ fn a_tap_selects_the_part_below_it_and_one_beside_selects_nothing() {
 }
 
 #[test]
+fn the_field_lens_tells_what_makes_the_value_under_the_pen() {
+    let mut screen = screen(None);
+    press(&mut screen, "File");
+    press(&mut screen, "Examples…");
+    press(&mut screen, "Snowman");
+    screen.key_press(Key::L);
+    settle(&mut screen);
+    let bar = screen.get_by_label("Lessons").rect().center();
+    screen.hover_at(bar);
+    settle(&mut screen);
+    assert!(screen.query_by_label_contains("Point at a place").is_some());
+    let at = middle(&screen);
+    screen.hover_at(at);
+    settle(&mut screen);
+    assert!(screen.query_by_label_contains("here: inside").is_some());
+    let told = screen.state().lens.as_ref().and_then(|lens| lens.explained()).expect("told").clone();
+    assert!((told.place.y + 1.0).abs() < 0.5 && told.value > 0.5, "{told:?}");
+    assert!((told.shares[0].share - 1.0).abs() < 1e-6 && told.shares.len() > 1, "{told:?}");
+    // The knob of the lens moves it towards the eye, out of the solid.
+    let (text, knob) =
+        screen.state().knobs().into_iter().find(|(text, _)| text.starts_with("Lens")).expect("a knob");
+    let rect = screen.get_by_label("Model view").rect();
+    drag(&mut screen, rect.min + vec2(knob.x, knob.y), vec2(-60.0, 60.0));
+    let moved =
+        screen.state().knobs().into_iter().find(|(text, _)| text.starts_with("Lens")).expect("a knob");
+    assert_ne!(moved.0, text);
+    press(&mut screen, "Close");
+    assert!(screen.state().lens.is_none());
+}
+
+#[test]
 fn the_parameters_of_what_is_selected_can_be_typed() {
     let mut screen = screen(None);
     let at = middle(&screen);

@@ -89,6 +89,12 @@ fn edit(modeler: &mut Modeler, ui: &mut Ui) {
 }
 
 fn view(modeler: &mut Modeler, ui: &mut Ui) {
+    let mut has_lens = modeler.lens.is_some();
+    let lens = ui.checkbox(&mut has_lens, "Field lens");
+    if lens.on_hover_text("A plane through the model that shows the field and who makes it (L)").changed() {
+        modeler.toggle_lens();
+    }
+    ui.separator();
     let settings = &mut modeler.settings;
     for look in Look::ALL {
         ui.radio_value(&mut settings.look, look, look.name());

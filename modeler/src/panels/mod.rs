@@ -6,6 +6,8 @@ mod parameters;
 mod status;
 mod tree;
 
+pub use tree::{rule, title};
+
 use crate::modeler::Modeler;
 use egui::{Panel, ScrollArea, Ui};
 

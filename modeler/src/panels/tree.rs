@@ -1,7 +1,7 @@
 //! The tree: what the model is made of, to be selected, named, muted, coloured and moved about.
 
 use crate::modeler::Modeler;
-use blobtree::{Color, Command, Node, NodePath, NodeRef, Operator, Shape, Sharpness};
+use blobtree::{Color, Command, Node, NodePath, NodeRef, Operator, Shape, Sharpness, Warp};
 use egui::{Color32, Id, Response, RichText, ScrollArea, Sense, Ui, collapsing_header};
 
 /// Nodes below which branches begin closed.
@@ -156,7 +156,32 @@ pub fn operators() -> [(&'static str, Operator); 8] {
     ]
 }
 
-/// What the user reads for a node: its name, else what it is.
+/// How an operator makes its value of those of its parts, in words.
+pub fn rule(operator: &Operator) -> &'static str {
+    match operator {
+        Operator::Union => "the largest value counts",
+        Operator::Blend(_) => "added softly: the sharper, the more the largest counts",
+        Operator::GradientBlend => "added where surfaces meet at an angle, else the largest counts",
+        Operator::Sum => "all values are added",
+        Operator::Difference => "the first, but no more than 1 minus each of the others",
+        Operator::BlendDifference(_) => "the first, softly held below 1 minus each of the others",
+        Operator::Intersection => "the smallest value counts",
+        Operator::BlendIntersection(_) => "the smallest value counts, softly",
+    }
+}
+
+/// What a warp makes of what is below it, in a word.
+fn made(warp: &Warp) -> &'static str {
+    match warp {
+        Warp::Transform(_) => "Moved",
+        Warp::Affine(_) => "Skewed",
+        Warp::Taper(_) => "Tapered",
+        Warp::Twist(_) => "Twisted",
+        Warp::Bend(_) => "Bent",
+    }
+}
+
+/// What the user reads for a node: its name, else what it is. A warp is what it makes of the part below.
 pub fn title(node: &Node) -> String {
     if let Some(name) = &node.name {
         return name.clone();
@@ -167,7 +192,31 @@ pub fn title(node: &Node) -> String {
             return name.into();
         }
     }
+    if let Shape::Warp(warp, child) = &node.shape {
+        let mut part = child;
+        while let (None, Shape::Warp(_, below)) = (&part.name, &part.shape) {
+            part = below;
+        }
+        let part = part.name.clone().unwrap_or_else(|| title(part).to_lowercase());
+        return format!("{} {part}", made(warp));
+    }
     let type_name = node.type_name().replace('_', " ");
     let mut letters = type_name.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use blobtree::build::{Build as _, point, union};
+
+    #[test]
+    fn what_is_moved_is_named_after_the_part_that_moves() {
+        let ball = || point([0.; 3], 5.);
+        assert_eq!(title(&ball().translate([1., 0., 0.])), "Moved point");
+        assert_eq!(title(&ball().named("Belly").translate([1., 0., 0.])), "Moved Belly");
+        let both = union([ball(), ball()]).translate([1., 0., 0.]).translate([0., 0., 9.]);
+        assert_eq!(title(&both), "Moved together");
+        assert_eq!(title(&both.named("Pair")), "Pair");
+    }
 }

@@ -265,6 +265,8 @@ fn knob_dragged(modeler: &mut Modeler, ui: &Ui, response: &Response, turns: Turn
             modeler.pad.depth = Some(value);
             modeler.think();
         }
+    } else if let (Turns::Lens, Some(lens)) = (turns, &mut modeler.lens) {
+        lens.at = Some(value).filter(|at| at.is_finite());
     } else if let Some(command) = knobs::command(modeler, turns, value) {
         modeler.try_out(command, let_go && by != Vec2::ZERO);
     }

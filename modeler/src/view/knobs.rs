@@ -6,6 +6,7 @@
 use crate::modeler::Modeler;
 use blobtree::{Command, NewShape, NodePath, NodeRef, Operator, Primitive, Shape, Sharpness, SketchPlane};
 use glam::{Affine3A, Vec2, Vec3};
+use sketch::suggest::View;
 
 /// How near a pen must come to a knob, points.
 const REACH: f32 = 15.0;
@@ -40,6 +41,8 @@ pub enum Turns {
     Blend,
     /// How far the sketch lies before the eye that drew it.
     Depth,
+    /// Where the field lens stands.
+    Lens,
 }
 
 /// A knob.
@@ -67,9 +70,10 @@ impl Knob {
         if !modeler.pad.is_empty() {
             return depth(modeler).into_iter().collect();
         }
-        let Some(path) = modeler.bench.selected() else { return Vec::new() };
         let root = &modeler.bench.shown().root;
-        [size(modeler, root, path), blend(modeler, root, path)].into_iter().flatten().collect()
+        let of_part =
+            modeler.bench.selected().map(|path| [size(modeler, root, path), blend(modeler, root, path)]);
+        of_part.into_iter().flatten().chain([lens(modeler)]).flatten().collect()
     }
 
     /// The knob at a place of the view, if there is one.
@@ -83,14 +87,14 @@ impl Knob {
         match self.turns {
             Turns::Size => (start + by).clamp(LEAST, GREATEST),
             Turns::Blend => (start * by.clamp(-10.0, 10.0).exp2()).clamp(1.0, 64.0),
-            Turns::Depth => start + by,
+            Turns::Depth | Turns::Lens => start + by,
         }
     }
 
     /// The text beside it.
     pub fn text(&self) -> String {
         match self.turns {
-            Turns::Size => format!("{} {:.1} mm", self.label, self.value),
+            Turns::Size | Turns::Lens => format!("{} {:.1} mm", self.label, self.value),
             Turns::Blend => format!("{} {:.1}", self.label, self.value),
             Turns::Depth => self.label.into(),
         }
@@ -120,7 +124,7 @@ pub fn command(modeler: &Modeler, turns: Turns, value: f32) -> Option<Command> {
             };
             Some(Command::SetShape { path, shape: NewShape::Operator(operator) })
         }
-        Turns::Depth => None,
+        Turns::Depth | Turns::Lens => None,
     }
 }
 
@@ -269,6 +273,34 @@ pub fn ghost_plane(modeler: &Modeler) -> Option<[Vec3; 4]> {
     Some(corners.map(|corner| drawn.at_depth(corner, depth)))
 }
 
+/// At the middle of the lens's lower rim, or as near to it as the view shows.
+fn lens(modeler: &Modeler) -> Option<Knob> {
+    let lens = modeler.lens.as_ref()?;
+    let [a, b, ..] = lens.framed()?.corners();
+    let middle = 0.5 * (a + b);
+    let view = modeler.camera.view(modeler.view.screen);
+    let from = view.screen_from_model(middle)?;
+    let mut along = Vec3::ZERO;
+    along[lens.facing.axis()] = 1.0;
+    let (grows, shortening) = seen_along(&view, along).unwrap_or((Vec2::NEG_Y, 1.0));
+    Some(Knob {
+        turns: Turns::Lens,
+        label: "Lens",
+        at: from.clamp(Vec2::splat(GAP), (modeler.view.screen - 2.0 * GAP).max(Vec2::splat(GAP))),
+        from,
+        grows,
+        per_point: view.mm_per_px(view.depth(middle)) / shortening,
+        value: lens.at_in(modeler.bounds()),
+    })
+}
+
+/// Where a direction of the model points on the screen, and how much shorter a mm along it seems; `None` if it points
+/// to the eye or away from it.
+fn seen_along(view: &View, along: Vec3) -> Option<(Vec2, f32)> {
+    let seen = Vec2::new(along.dot(view.right()), -along.dot(view.up));
+    (seen.length() >= SEEN).then(|| (seen.normalize(), seen.length()))
+}
+
 fn depth(modeler: &Modeler) -> Option<Knob> {
     let [a, _, _, d] = ghost_plane(modeler)?;
     let drawn = modeler.pad.drawn_in()?;
@@ -276,10 +308,8 @@ fn depth(modeler: &Modeler) -> Option<Knob> {
     let view = modeler.camera.view(modeler.view.screen);
     let from = view.screen_from_model(0.5 * (a + d))?;
     let mm_per_point = view.mm_per_px(view.depth(0.5 * (a + d)));
-    let seen = Vec2::new(drawn.forward.dot(view.right()), -drawn.forward.dot(view.up));
     // As on a desk, what is farther away is farther up.
-    let (grows, shortening) =
-        if seen.length() >= SEEN { (seen.normalize(), seen.length()) } else { (Vec2::NEG_Y, 1.0) };
+    let (grows, shortening) = seen_along(&view, drawn.forward).unwrap_or((Vec2::NEG_Y, 1.0));
     Some(Knob {
         turns: Turns::Depth,
         label: "Nearer or farther",

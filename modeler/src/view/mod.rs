@@ -3,6 +3,7 @@
 mod hand;
 mod handles;
 mod knobs;
+mod lens;
 mod overlay;
 mod pictures;
 

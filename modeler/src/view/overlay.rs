@@ -46,6 +46,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
         }
         paint_handles(modeler, &painter, response);
     }
+    super::lens::show(modeler, ui, &view, response);
     paint_ghost_plane(modeler, &painter, &view, response);
     paint_knobs(modeler, &painter, response);
     paint_sketch(modeler, &painter, &view, response);
