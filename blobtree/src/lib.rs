@@ -150,7 +150,7 @@ pub use sketched::{
     Revolution, RevolutionAxis, Side, SketchPlane, Solved, Template,
 };
 pub use support_free::{
-    Bake, BakeError, BakeStore, Baker, Beyond, GROWN_FALLOFF, SupportFree, SupportMode, VOXEL_BRICK,
-    VOXEL_SAMPLES, VoxelBrick, VoxelImage,
+    Bake, BakeError, BakeStore, Baker, Beyond, BrushKind, BrushStroke, BrushTip, Brushed, GROWN_FALLOFF,
+    MAX_NODE_DABS, SupportFree, SupportMode, VOXEL_BRICK, VOXEL_SAMPLES, VoxelBrick, VoxelImage,
 };
 pub use warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};

@@ -17,7 +17,7 @@ use crate::sketched::{
     Drawing, Inflation, LinearSweep, PathSweep, Profile, Revolution, RevolutionAxis, Side, SketchPlane,
     Template,
 };
-use crate::support_free::{SupportFree, SupportMode};
+use crate::support_free::{BrushKind, BrushStroke, BrushTip, SupportFree, SupportMode};
 use crate::warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};
 pub use drawn::{PolygonSources, polygon_template, stroke};
 use fastrand::Rng;
@@ -260,7 +260,37 @@ impl RandomTree {
             overhang_degrees: self.between(20.0, 70.0),
             layer_height: self.between(0.1, 2.0),
             bed: if self.rng.bool() { 0.0 } else { self.between(-30.0, 30.0) },
+            strokes: Vec::new(),
         }
+    }
+
+    /// The next brush stroke.
+    pub fn stroke(&mut self) -> BrushStroke {
+        let kinds = [
+            BrushKind::AddTrim,
+            BrushKind::RemoveTrim,
+            BrushKind::RemovePreserve,
+            BrushKind::AddGrow,
+            BrushKind::SmoothTrim,
+        ];
+        let places: Vec<[f32; 3]> = (0..self.rng.usize(1..5)).map(|_| self.place().to_array()).collect();
+        let count = places.len();
+        let brush = kinds[self.rng.usize(..kinds.len())];
+        let mut stroke = BrushStroke::new(brush, self.between(0.5, 5.0), places);
+        stroke.tip = match self.rng.u32(..4) {
+            0 => BrushTip::Cube,
+            1 => BrushTip::Cylinder,
+            2 => BrushTip::Shape(Node::new(Shape::Primitive(ball_of(self.between(0.5, 1.0)))).into()),
+            _ => BrushTip::Ball,
+        };
+        if self.rng.bool() {
+            stroke.light_radius = Some(self.between(0.2, 2.0));
+            stroke.light_strength = Some(self.rng.f32());
+            stroke.spacing = Some(self.between(0.5, 2.0));
+            stroke.pressures = Some((0..count).map(|_| self.rng.f32()).collect());
+        }
+        (stroke.material, stroke.grown_material) = (self.rng.u8(..3), self.rng.u8(..3));
+        stroke
     }
 
     /// The next warp.
@@ -337,6 +367,11 @@ impl RandomTree {
     fn axis_name(&mut self) -> Axis {
         [Axis::X, Axis::Y, Axis::Z][self.rng.usize(..3)]
     }
+}
+
+/// A ball around the origin.
+fn ball_of(radius: f32) -> Primitive {
+    Primitive::Point(Point { center: Vec3::ZERO, radius, falloff: None })
 }
 
 #[cfg(test)]

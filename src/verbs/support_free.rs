@@ -35,6 +35,7 @@ pub fn run(args: &SupportFreeArgs, job: &mut Job) -> Result<Report, Failure> {
         overhang_degrees: args.max_overhang,
         layer_height: args.layer_height,
         bed: 0.0,
+        strokes: Vec::new(),
     };
     rule.check().map_err(|e| Failure::Input(e.to_string()))?;
     let scene = match input::open(&args.input, None, Prefer::Scene, job, &mut report)? {

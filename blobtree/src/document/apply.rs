@@ -3,6 +3,8 @@
 use super::command::{Command, CommandError, NewShape};
 use crate::node::{Node, NodePath, NodeRef, Shape};
 use crate::scene::{Scene, measure};
+use crate::support_free::BrushStroke;
+use std::sync::Arc;
 
 /// The scene after the command. Errors: as [`super::Document::apply`].
 pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandError> {
@@ -16,6 +18,7 @@ pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandErr
             | Command::WrapInWarp { .. }
             | Command::WrapInSupportFree { .. }
             | Command::SetShape { .. }
+            | Command::AddStroke { .. }
     );
     let new_root = match command {
         Command::Insert { parent, index, node } => insert(root, &parent, index, node)?,
@@ -37,6 +40,18 @@ pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandErr
         })?,
         Command::SetShape { path, shape } => edit(root, &path, |node| {
             change(node, Node { shape: reshaped(node, shape, &path)?, ..(**node).clone() })
+        })?,
+        Command::AddStroke { path, stroke } => edit_strokes(root, &path, |strokes| {
+            strokes.push(stroke);
+            Ok(())
+        })?,
+        Command::RemoveStroke { path, index } => edit_strokes(root, &path, |strokes| {
+            let len = strokes.len();
+            if index >= len {
+                return Err(CommandError::NoSuchStroke { path: path.clone(), index, len });
+            }
+            strokes.remove(index);
+            Ok(())
         })?,
         Command::SetName { path, name } => {
             edit(root, &path, |node| change(node, Node { name, ..(**node).clone() }))?
@@ -117,6 +132,22 @@ fn reshaped(node: &Node, wanted: NewShape, path: &NodePath) -> Result<Shape, Com
             wanted: wanted.type_name(),
         }),
     }
+}
+
+/// The tree with other brush strokes of the support-free node at `path`.
+fn edit_strokes(
+    root: &NodeRef,
+    path: &NodePath,
+    to: impl FnOnce(&mut Vec<Arc<BrushStroke>>) -> Result<(), CommandError>,
+) -> Result<NodeRef, CommandError> {
+    edit(root, path, |node| {
+        let mut copy = (**node).clone();
+        let Shape::SupportFree(rule, _) = &mut copy.shape else {
+            return Err(CommandError::NotSupportFree { path: path.clone(), type_name: node.type_name() });
+        };
+        to(&mut rule.strokes)?;
+        Ok(copy.into())
+    })
 }
 
 /// The tree with other children of the operator at `path`.

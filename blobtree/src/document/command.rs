@@ -3,8 +3,9 @@
 use crate::node::{Color, Node, NodePath, NodeRef, Shape};
 use crate::operator::Operator;
 use crate::scene::SceneError;
-use crate::support_free::SupportFree;
+use crate::support_free::{BrushStroke, SupportFree};
 use crate::warp::Warp;
+use std::sync::Arc;
 
 /// One edit. Every path and index means the tree as it is before the edit.
 ///
@@ -74,6 +75,20 @@ pub enum Command {
         path: NodePath,
         /// What it becomes.
         shape: NewShape,
+    },
+    /// Adds a brush stroke after those that a support-free node has.
+    AddStroke {
+        /// The support-free node.
+        path: NodePath,
+        /// The stroke.
+        stroke: Arc<BrushStroke>,
+    },
+    /// Takes a brush stroke out of those of a support-free node; later ones are done without it.
+    RemoveStroke {
+        /// The support-free node.
+        path: NodePath,
+        /// Which, from 0 on.
+        index: usize,
     },
     /// Names a node, or takes its name away.
     SetName {
@@ -177,6 +192,24 @@ pub enum CommandError {
         /// What it was to become.
         wanted: &'static str,
     },
+    /// Only support-free nodes have brush strokes.
+    #[error("the {type_name} at {path} has no brush strokes; only a support_free node has")]
+    NotSupportFree {
+        /// The node.
+        path: NodePath,
+        /// What it is.
+        type_name: &'static str,
+    },
+    /// There are fewer strokes.
+    #[error("there is no stroke {index} among the {len} of {path}; they count from 0")]
+    NoSuchStroke {
+        /// The node.
+        path: NodePath,
+        /// The number asked for.
+        index: usize,
+        /// How many there are.
+        len: usize,
+    },
     /// The tree would not be legal.
     #[error("not possible: {0}")]
     Illegal(SceneError),
@@ -214,6 +247,10 @@ impl Command {
                 }
                 _ => format!("Change {}", at(path)),
             },
+            Self::AddStroke { path, stroke } => {
+                format!("Brush {} ({})", at(path), stroke.brush.name().replace('_', " "))
+            }
+            Self::RemoveStroke { path, .. } => format!("Take a brush stroke from {}", at(path)),
             Self::SetName { path, name: Some(name) } => format!("Name {} {name}", at(path)),
             Self::SetName { path, name: None } => format!("Take the name from {}", at(path)),
             Self::SetColor { path, .. } => format!("Colour {}", at(path)),
@@ -238,7 +275,7 @@ impl From<&Shape> for NewShape {
             Shape::Primitive(primitive) => Self::Primitive(primitive.clone()),
             Shape::Operator(operator, _) => Self::Operator(*operator),
             Shape::Warp(warp, _) => Self::Warp(warp.clone()),
-            Shape::SupportFree(rule, _) => Self::SupportFree(*rule),
+            Shape::SupportFree(rule, _) => Self::SupportFree(rule.clone()),
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::operator::Operator;
 use crate::primitive::{Point, Primitive};
 use crate::random::RandomTree;
 use crate::scene::Scene;
+use crate::support_free::{BrushKind, BrushStroke, SupportFree};
 use crate::warp::{Transform, Warp};
 use fastrand::Rng;
 use glam::Vec3;
@@ -156,6 +157,11 @@ fn illegal_commands_are_told_and_change_nothing() {
             Command::SetShape { path: path("/0"), shape: NewShape::Primitive(ball(f32::NAN)) },
             "not possible: node /0: `radius` is NaN",
         ),
+        (
+            Command::AddStroke { path: path("/1"), stroke: stroke(1.0) },
+            "the union at /1 has no brush strokes; only a support_free node has",
+        ),
+        (Command::RemoveStroke { path: path("/9"), index: 0 }, "there is no node at /9"),
     ];
     for (command, expected) in cases {
         let mut document = document();
@@ -165,6 +171,39 @@ fn illegal_commands_are_told_and_change_nothing() {
         assert!(Arc::ptr_eq(&document.scene().root, &before.root), "{command:?}");
         assert!(document.undo().is_none(), "{command:?}");
     }
+}
+
+fn stroke(radius: f32) -> Arc<BrushStroke> {
+    Arc::new(BrushStroke::new(BrushKind::RemoveTrim, radius, [[0., 0., 5.]]))
+}
+
+#[test]
+fn brush_strokes_come_and_go_in_a_support_free_node_and_undo_gives_back_the_same_node() {
+    let child: NodeRef = point([0., 0., 5.], 5.).into();
+    let root = child.clone().support_free(SupportFree::default());
+    let mut document = Document::new(Scene::new(root)).expect("legal");
+    let at = path("/");
+    let first = document.scene().clone();
+    document.apply(Command::AddStroke { path: at.clone(), stroke: stroke(1.0) }).expect("there is a node");
+    document.apply(Command::AddStroke { path: at.clone(), stroke: stroke(2.0) }).expect("there is a node");
+    let radii = |scene: &Scene| match &scene.root.shape {
+        Shape::SupportFree(rule, _) => rule.strokes.iter().map(|s| s.radius).collect::<Vec<_>>(),
+        _ => panic!("it is still a support-free node"),
+    };
+    assert_eq!(radii(document.scene()), [1.0, 2.0]);
+    assert!(Arc::ptr_eq(&document.scene().root.children()[0], &child), "the child is another one");
+    let text = document.scene().to_text().expect("legal");
+    document.apply(Command::RemoveStroke { path: at.clone(), index: 0 }).expect("there is one");
+    assert_eq!(radii(document.scene()), [2.0]);
+    let error = document.apply(Command::RemoveStroke { path: at.clone(), index: 1 }).expect_err("only one");
+    assert_eq!(error.to_string(), "there is no stroke 1 among the 1 of /; they count from 0");
+    let error = document.apply(Command::AddStroke { path: at, stroke: stroke(-1.0) }).expect_err("illegal");
+    assert_eq!(error.to_string(), "not possible: node /: `strokes[1].radius` is -1.0, not 0.05 to 100 mm");
+    document.undo();
+    assert_eq!(document.scene().to_text().expect("legal"), text);
+    document.undo();
+    document.undo();
+    assert!(Arc::ptr_eq(&document.scene().root, &first.root));
 }
 
 #[test]
@@ -236,7 +275,7 @@ fn random_command(rng: &mut Rng, trees: &mut RandomTree, root: &NodeRef) -> Comm
     };
     let (path, parent) = (at(), at());
     let index = rng.usize(..4);
-    match rng.u32(..14) {
+    match rng.u32(..18) {
         0..3 => Command::Insert { parent, index, node: trees.leaf().into() },
         3 => Command::Remove { path },
         4 => Command::Replace { path, node: trees.leaf().into() },
@@ -247,6 +286,9 @@ fn random_command(rng: &mut Rng, trees: &mut RandomTree, root: &NodeRef) -> Comm
         10 => Command::SetShape { path, shape: NewShape::Primitive(trees.primitive()) },
         11 => Command::SetShape { path, shape: NewShape::Operator(trees.operator()) },
         12 => Command::SetName { path, name: rng.bool().then(|| format!("n{}", rng.u32(..9))) },
+        13 => Command::WrapInSupportFree { path, rule: trees.rule() },
+        14 | 15 => Command::AddStroke { path, stroke: Arc::new(trees.stroke()) },
+        16 => Command::RemoveStroke { path, index: 0 },
         _ => Command::SetColor { path, color: Some(Color([rng.u8(..), 0, 0])) },
     }
 }

@@ -6,10 +6,11 @@ use crate::leaf::{self, Frame, Leaf, Voxels, even_scale};
 use crate::node::{Node, NodeRef, Shape};
 use crate::operator::Operator;
 use crate::primitive::{HalfSpace, Primitive};
-use crate::support_free::{Bake, BakeStore, GROWN_FALLOFF, Kept, SupportFree, SupportMode};
+use crate::support_free::{Bake, BakeStore, GROWN_FALLOFF, Kept, SupportFree, SupportMode, VoxelImage};
 use crate::warp::Warp;
 use crate::warp_map::{AffineWarp, BendMap, TaperMap, TwistMap, WarpMap};
 use glam::{DAffine3, Mat3, Vec3};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::sampler::TreeSampler;
@@ -207,7 +208,7 @@ impl Tree {
         outer
     }
 
-    /// `min(max(child, grown), limit, dents)`, all as leaves and operations like others.
+    /// What the bake says, all as leaves and operations like others.
     fn compile_support_free(
         &mut self,
         rule: &SupportFree,
@@ -216,7 +217,7 @@ impl Tree {
         kept: Kept,
     ) -> Instr {
         let exact = self.compile(child, node_from_world, kept);
-        if rule.mode == SupportMode::Off || exact.op == Op::Empty {
+        if rule.mode == SupportMode::Off || exact.op == Op::Empty && rule.strokes.is_empty() {
             return exact;
         }
         let Some(bake) = kept.bakes.find(rule, child) else {
@@ -235,14 +236,24 @@ impl Tree {
     ) -> Instr {
         let image_from_world = rule.upright_from_child() * *node_from_world;
         let mut result = exact;
-        if let Some(grown) = &bake.grown {
-            let leaf = self.add_leaf(Leaf::Voxels(Voxels::new(&image_from_world, grown.clone())), EVERYWHERE);
-            result = self.push(Op::Union, [result, leaf]);
+        let mut limits = Vec::new();
+        for (grown, limit) in [(&bake.grown, &bake.limit), (&bake.brushed.grown, &bake.brushed.limit)] {
+            if let Some(grown) = grown {
+                let grown = self.add_image(&image_from_world, grown);
+                limits.insert(0, result);
+                let below = self.lowest(std::mem::take(&mut limits));
+                result = if below.op == Op::Empty { grown } else { self.push(Op::Union, [below, grown]) };
+            }
+            if let Some(limit) = limit {
+                limits.push(self.add_image(&image_from_world, limit));
+            }
         }
-        let mut limits = vec![result];
-        for limit in bake.limit.iter().chain(&bake.dents) {
-            let voxels = Voxels::new(&image_from_world, limit.clone());
-            limits.push(self.add_leaf(Leaf::Voxels(voxels), EVERYWHERE));
+        if result.op == Op::Empty {
+            return result;
+        }
+        limits.insert(0, result);
+        if let Some(dents) = &bake.dents {
+            limits.push(self.add_image(&image_from_world, dents));
         }
         if bake.cut_at_bed {
             let above = Primitive::HalfSpace(HalfSpace {
@@ -253,7 +264,19 @@ impl Tree {
             });
             limits.push(self.add_leaf(Leaf::new(&above, node_from_world), EVERYWHERE));
         }
-        if limits.len() == 1 { result } else { self.push(Op::Intersection, limits) }
+        self.lowest(limits)
+    }
+
+    fn add_image(&mut self, image_from_world: &DAffine3, image: &Arc<VoxelImage>) -> Instr {
+        self.add_leaf(Leaf::Voxels(Voxels::new(image_from_world, image.clone())), EVERYWHERE)
+    }
+
+    /// The least of one or more fields.
+    fn lowest(&mut self, fields: Vec<Instr>) -> Instr {
+        match fields[..] {
+            [one] => one,
+            _ => self.push(Op::Intersection, fields),
+        }
     }
 
     fn add_leaf(&mut self, leaf: Leaf, support: Aabb) -> Instr {

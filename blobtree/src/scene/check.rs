@@ -3,6 +3,7 @@
 use super::error::{SceneError, SceneProblem};
 use super::{MAX_DEPTH, MAX_NODES, Scene};
 use crate::node::{Node, NodePath, NodeRef, Shape};
+use crate::support_free::BrushTip;
 use std::collections::HashMap;
 
 /// How large a tree is.
@@ -46,7 +47,14 @@ pub(crate) fn numbers(node: &Node) -> Result<(), SceneProblem> {
     match &node.shape {
         Shape::Primitive(primitive) => Ok(primitive.check()?),
         Shape::Warp(warp, _) => Ok(warp.check()?),
-        Shape::SupportFree(rule, _) => Ok(rule.check()?),
+        Shape::SupportFree(rule, _) => {
+            rule.check()?;
+            let tips = rule.strokes.iter().filter_map(|stroke| match &stroke.tip {
+                BrushTip::Shape(node) => Some(node),
+                _ => None,
+            });
+            tips.map(|tip| measure(tip).map_err(|e| e.problem)).try_for_each(|size| size.map(drop))
+        }
         // A sharpness is checked where it is made.
         Shape::Operator(..) => Ok(()),
     }

@@ -35,6 +35,7 @@ pub(crate) use check::measure;
 pub use color::ColorError;
 pub use error::{SceneError, SceneProblem, TextPosition};
 pub use schema::scene_schema;
+pub(crate) use write::Whole;
 
 /// The newest version of the file format, and the one that is written.
 pub const VERSION: u64 = 1;

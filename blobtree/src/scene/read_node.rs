@@ -13,7 +13,7 @@ use crate::node::{Node, NodeRef, Shape};
 use crate::operator::{Operator, Sharpness};
 use crate::primitive::{Drawn, Primitive};
 use crate::sketched::{Drawing, Template};
-use crate::support_free::SupportFree;
+use crate::support_free::{BrushStroke, BrushTip, SupportFree};
 use crate::warp::Warp;
 use mesh::MeshDistance;
 use serde_json::{Map, Value};
@@ -99,7 +99,7 @@ impl<'a> NodeReader<'a> {
                 NewShape::Operator(operator)
             }
             Kind::Warp => NewShape::Warp(self.warp(&type_name, &mut fields, &BARE)?),
-            Kind::SupportFree => NewShape::SupportFree(self.rule(&mut fields, &BARE)?),
+            Kind::SupportFree => NewShape::SupportFree(self.rule(&mut fields, &BARE, 1)?),
         };
         let mut node = Node::new(journal::childless(shape));
         self.complete(&mut node)?;
@@ -198,7 +198,7 @@ impl<'a> NodeReader<'a> {
             }
             Kind::SupportFree => {
                 let child = self.only_child(fields, "the node that is to print without supports")?;
-                let rule = self.rule(fields, &ONE_CHILD)?;
+                let rule = self.rule(fields, &ONE_CHILD, depth)?;
                 let (child, size) = self.at(&[Step::key("child")], |reader| reader.node(child, depth + 1))?;
                 (Shape::SupportFree(rule, child), Size::over([size].into_iter()))
             }
@@ -339,8 +339,59 @@ impl<'a> NodeReader<'a> {
         warp.map_err(|fault| self.fault_in(fault))
     }
 
-    fn rule(&self, fields: &mut Fields, others: &[&str]) -> Result<SupportFree, Fault> {
-        parameters::all(std::mem::take(fields), others).map_err(|fault| self.fault_in(fault))
+    /// `depth` is that of the node.
+    fn rule(&mut self, fields: &mut Fields, others: &[&str], depth: usize) -> Result<SupportFree, Fault> {
+        let strokes = match fields.remove("strokes") {
+            None => Vec::new(),
+            Some(Value::Array(strokes)) => {
+                let read = |(n, stroke)| {
+                    let steps = [Step::key("strokes"), Step::Index(n)];
+                    self.at(&steps, |reader| reader.stroke(stroke, depth + 1)).map(Arc::new)
+                };
+                strokes.into_iter().enumerate().map(read).collect::<Result<_, _>>()?
+            }
+            Some(other) => {
+                let problem = parameters::wrong("strokes", described(&other), "a list of brush strokes");
+                return Err(self.fault_in((vec![Step::key("strokes")], problem)));
+            }
+        };
+        let others: Vec<&str> = others.iter().copied().chain(["strokes"]).collect();
+        let rule = parameters::all(std::mem::take(fields), &others);
+        Ok(SupportFree { strokes, ..rule.map_err(|fault| self.fault_in(fault))? })
+    }
+
+    /// Reads a brush stroke at these steps.
+    pub(super) fn read_stroke(&mut self, steps: Vec<Step>, value: Value) -> Result<BrushStroke, Fault> {
+        self.steps = steps;
+        let stroke = self.stroke(value, 1)?;
+        stroke.check("stroke").map_err(|e| self.fault(e.into()))?;
+        Ok(stroke)
+    }
+
+    /// `depth` is that of its tip.
+    fn stroke(&mut self, value: Value, depth: usize) -> Result<BrushStroke, Fault> {
+        let shown = described(&value);
+        let Value::Object(mut fields) = value else {
+            return Err(self.fault(parameters::wrong("the stroke", shown, "an object with `brush`")));
+        };
+        let expected = "\"ball\", \"cube\", \"cylinder\" or a node";
+        let tip = match fields.remove("tip") {
+            None => BrushTip::Ball,
+            Some(Value::String(name)) => BrushTip::named(&name).ok_or_else(|| {
+                let problem = parameters::unknown("brush tip", &name, BrushTip::NAMES.into_iter());
+                self.fault_in((vec![Step::key("tip")], problem))
+            })?,
+            Some(Value::Object(node)) => {
+                let read = |reader: &mut Self| reader.node(Value::Object(node), depth);
+                BrushTip::Shape(self.at(&[Step::key("tip")], read)?.0)
+            }
+            Some(other) => {
+                let problem = parameters::wrong("tip", described(&other), expected);
+                return Err(self.fault_in((vec![Step::key("tip")], problem)));
+            }
+        };
+        let stroke: BrushStroke = parameters::all(fields, &["tip"]).map_err(|fault| self.fault_in(fault))?;
+        Ok(BrushStroke { tip, ..stroke })
     }
 
     fn primitive(

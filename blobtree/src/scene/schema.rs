@@ -5,7 +5,7 @@ use crate::primitive::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, Point, Polygon, Polyline, Segment, Torus,
 };
 use crate::sketched::{Inflation, LinearSweep, PathSweep, Revolution};
-use crate::support_free::SupportFree;
+use crate::support_free::{BrushStroke, BrushTip, SupportFree};
 use crate::warp::{AffineMap, Bend, Taper, Transform, Twist};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
@@ -76,6 +76,9 @@ fn node(name: &str) -> Value {
         own.insert("child".into(), json!({ "$ref": "#/$defs/node" }));
         required.push("child".into());
     }
+    if name == "support_free" {
+        own.insert("strokes".into(), strokes());
+    }
     required.insert(0, "type".into());
     let mut properties = common();
     properties.insert("type".into(), json!({ "const": name }));
@@ -87,6 +90,29 @@ fn node(name: &str) -> Value {
         "properties": properties,
         "required": required,
         "additionalProperties": false,
+    })
+}
+
+/// The list of brush strokes, whose tips may be nodes.
+fn strokes() -> Value {
+    let (description, mut properties, required) = parameters::<BrushStroke>();
+    let tip = json!({
+        "description": "The tip, of radius 1 mm around the origin: a ball if left out.",
+        "anyOf": [{ "enum": BrushTip::NAMES }, { "$ref": "#/$defs/node" }],
+        "default": "ball",
+    });
+    properties.insert("tip".into(), tip);
+    json!({
+        "description": "Brush strokes, done one after the other to what the mode has made.",
+        "type": "array",
+        "items": {
+            "description": description,
+            "type": "object",
+            "properties": properties,
+            "required": required,
+            "additionalProperties": false,
+        },
+        "default": [],
     })
 }
 

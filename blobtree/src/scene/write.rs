@@ -217,6 +217,16 @@ impl Serialize for Written<'_> {
     }
 }
 
+/// A node in full, with all below it, and no names: for what stands in no tree.
+pub(crate) struct Whole<'a>(pub &'a NodeRef);
+
+impl Serialize for Whole<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let names = Names { of: HashMap::new(), all: BTreeMap::new(), taken: HashSet::new() };
+        Written { node: self.0, names: &names }.serialize(serializer)
+    }
+}
+
 /// A node without its children.
 pub(super) struct Bare<'a>(pub &'a Node);
 

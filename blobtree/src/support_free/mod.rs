@@ -5,10 +5,12 @@
 //! and [`Tree::unconstrained`](crate::Tree::unconstrained) says so.
 
 mod bake;
+mod brush_stroke;
 mod image;
 mod store;
 
-pub use bake::{Bake, BakeError, Baker};
+pub use bake::{Bake, BakeError, Baker, Brushed};
+pub use brush_stroke::{BrushKind, BrushStroke, BrushTip, MAX_NODE_DABS};
 pub use image::{Beyond, VOXEL_BRICK, VOXEL_SAMPLES, VoxelBrick, VoxelImage};
 pub use store::BakeStore;
 pub(crate) use store::Kept;
@@ -18,12 +20,13 @@ use crate::field::Aabb;
 use glam::{DAffine3, DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// How far grown matter reaches beyond its surface, mm.
 pub const GROWN_FALLOFF: f32 = 2.0;
 
 /// What a support-free node does to its child, in the child's own space, where z points up from the bed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportFree {
     /// How what needs supports is dealt with.
@@ -41,6 +44,10 @@ pub struct SupportFree {
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = -100_000.0, max = 100_000.0))]
     pub bed: f32,
+    /// Brush strokes, done one after the other to what the mode has made.
+    #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(skip)]
+    pub strokes: Vec<Arc<BrushStroke>>,
 }
 
 /// How what needs supports is dealt with.
@@ -67,7 +74,7 @@ impl Default for SupportFree {
     /// Trims to 45° in layers of 0.25 mm, from the bed at 0.
     fn default() -> Self {
         let (overhang_degrees, layer_height) = (usual_overhang(), usual_layer());
-        Self { mode: SupportMode::Trim, overhang_degrees, layer_height, bed: 0.0 }
+        Self { mode: SupportMode::Trim, overhang_degrees, layer_height, bed: 0.0, strokes: Vec::new() }
     }
 }
 
@@ -90,12 +97,16 @@ impl SupportFree {
 
     /// The box outside which the node's field is 0, from its child's.
     pub(crate) fn support(&self, child: &Aabb) -> Aabb {
-        if self.mode != SupportMode::Grow || child.is_empty() {
+        if self.mode == SupportMode::Off {
             return *child;
+        }
+        let brushed = brush_stroke::added_within(self.strokes.iter().map(|stroke| &**stroke), self.bed);
+        if self.mode != SupportMode::Grow || child.is_empty() {
+            return child.union(&brushed);
         }
         let mut around = child.grown(GROWN_FALLOFF);
         around.min.z = around.min.z.min(self.bed - GROWN_FALLOFF);
-        around
+        around.union(&brushed)
     }
 }
 
@@ -103,7 +114,8 @@ impl Checked for SupportFree {
     fn check(&self) -> Result<(), ParameterError> {
         number("overhang_degrees", self.overhang_degrees, 20.0, 70.0, "degrees")?;
         number("layer_height", self.layer_height, 0.02, 2.0, "mm")?;
-        number("bed", self.bed, -1e5, 1e5, "mm")
+        number("bed", self.bed, -1e5, 1e5, "mm")?;
+        brush_stroke::check_all(self.strokes.iter().map(|stroke| &**stroke))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Bakes, kept from one version of a scene to the next.
 
-use super::{Bake, BakeError, Baker, SupportFree, SupportMode};
+use super::{Bake, BakeError, Baker, BrushStroke, SupportFree, SupportMode};
 use crate::cache::NodeCache;
 use crate::eval::Tree;
 use crate::node::{Node, NodeRef, Shape};
@@ -10,8 +10,8 @@ use std::sync::{Arc, Weak};
 /// Most bakes that are kept; beyond, those of other versions are dropped.
 const MOST_BAKES: usize = 64;
 
-/// By what a bake depends on: the child's address, and the numbers of the rule.
-type Key = (usize, SupportMode, [u32; 3]);
+/// By what a bake depends on: the child's address, the numbers of the rule, and the strokes' addresses.
+type Key = (usize, SupportMode, [u32; 3], Vec<usize>);
 
 /// The bakes of a scene's support-free nodes.
 ///
@@ -19,8 +19,15 @@ type Key = (usize, SupportMode, [u32; 3]);
 /// nothing. A store serves one baker, whose results may depend on nothing but the node.
 #[derive(Clone, Debug, Default)]
 pub struct BakeStore {
-    /// The weak reference keeps the address from being used again.
-    bakes: HashMap<Key, (Weak<Node>, Arc<Bake>)>,
+    bakes: HashMap<Key, KeptBake>,
+}
+
+/// A bake with what keeps the addresses in its key from being used again.
+#[derive(Clone, Debug)]
+struct KeptBake {
+    child: Weak<Node>,
+    _strokes: Vec<Arc<BrushStroke>>,
+    bake: Arc<Bake>,
 }
 
 /// What is already known of a tree's nodes when it is compiled.
@@ -49,24 +56,31 @@ impl BakeStore {
     ///
     /// Errors: the baker's.
     pub fn bake(&mut self, root: &NodeRef, baker: &dyn Baker) -> Result<(), BakeError> {
-        self.bakes.retain(|_, (child, _)| child.strong_count() > 0);
+        self.bakes.retain(|_, kept| kept.child.strong_count() > 0);
         if self.bakes.len() > MOST_BAKES {
             let mut present = Vec::new();
             visit(root, &mut |rule, child| present.push(key(rule, child)));
             self.bakes.retain(|key, _| present.contains(key));
         }
         let mut missing = Vec::new();
-        visit(root, &mut |rule, child| missing.push((*rule, child.clone())));
+        visit(root, &mut |rule, child| missing.push((rule.clone(), child.clone())));
         for (rule, child) in missing {
             if self.find(&rule, &child).is_none() {
                 let upright = Tree::compiled_in(&child, &rule.upright_from_child().inverse(), self.kept());
-                let bake = baker.bake(&rule, &upright)?;
-                let node = Node::new(Shape::SupportFree(rule, child.clone()));
-                let baked = |bake: &Bake| {
+                let mut bake = baker.bake(&rule, &upright)?;
+                let node = Node::new(Shape::SupportFree(rule.clone(), child.clone()));
+                let with = |bake: &Bake| {
                     let mut store = self.clone();
                     store.insert(&rule, &child, bake.clone());
-                    store.compile(&node)
+                    store
                 };
+                if !rule.strokes.is_empty() {
+                    let store = with(&Bake { cut_at_bed: false, ..bake.clone() });
+                    let upright =
+                        Tree::compiled_in(&node, &rule.upright_from_child().inverse(), store.kept());
+                    bake = baker.brush(&rule, &upright, bake)?;
+                }
+                let baked = |bake: &Bake| with(bake).compile(&node);
                 let bake = baker.finish(&rule, &baked, bake)?;
                 self.insert(&rule, &child, bake);
             }
@@ -88,12 +102,14 @@ impl BakeStore {
     }
 
     fn insert(&mut self, rule: &SupportFree, child: &NodeRef, bake: Bake) {
-        self.bakes.insert(key(rule, child), (Arc::downgrade(child), Arc::new(bake)));
+        let kept =
+            KeptBake { child: Arc::downgrade(child), _strokes: rule.strokes.clone(), bake: Arc::new(bake) };
+        self.bakes.insert(key(rule, child), kept);
     }
 
     pub(crate) fn find(&self, rule: &SupportFree, child: &NodeRef) -> Option<&Arc<Bake>> {
-        let (weak, bake) = self.bakes.get(&key(rule, child))?;
-        (weak.strong_count() > 0).then_some(bake)
+        let kept = self.bakes.get(&key(rule, child))?;
+        (kept.child.strong_count() > 0).then_some(&kept.bake)
     }
 
     /// These bakes and no caches.
@@ -104,7 +120,8 @@ impl BakeStore {
 
 fn key(rule: &SupportFree, child: &NodeRef) -> Key {
     let numbers = [rule.overhang_degrees, rule.layer_height, rule.bed].map(f32::to_bits);
-    (Arc::as_ptr(child) as usize, rule.mode, numbers)
+    let strokes = rule.strokes.iter().map(|stroke| Arc::as_ptr(stroke) as usize).collect();
+    (Arc::as_ptr(child) as usize, rule.mode, numbers, strokes)
 }
 
 /// Calls `found` for every support-free node to bake, children before parents.

@@ -30,7 +30,7 @@ pub(super) fn childless(shape: NewShape) -> Shape {
 }
 
 /// What can be done, each with its own fields.
-const WORDS: [(&str, &[&str]); 14] = [
+const WORDS: [(&str, &[&str]); 16] = [
     ("insert", &["parent", "index", "define", "node"]),
     ("remove", &["path"]),
     ("replace", &["path", "define", "node"]),
@@ -38,6 +38,8 @@ const WORDS: [(&str, &[&str]); 14] = [
     ("wrap", &["path", "shape"]),
     ("unwrap", &["path"]),
     ("set_shape", &["path", "shape"]),
+    ("add_stroke", &["path", "stroke"]),
+    ("remove_stroke", &["path", "index"]),
     ("set_name", &["path", "name"]),
     ("set_color", &["path", "color"]),
     ("set_muted", &["path", "muted"]),

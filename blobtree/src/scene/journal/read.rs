@@ -9,7 +9,9 @@ use crate::scene::parameters::{self, described};
 use crate::scene::read::{Fault, define_all, header, located, parsed};
 use crate::scene::read_node::NodeReader;
 use crate::scene::{Scene, SceneError, SceneSources};
+use crate::support_free::BrushStroke;
 use serde_json::{Map, Value};
+use std::sync::Arc;
 
 /// See [`JournalEntry::from_line`].
 pub(crate) fn read(
@@ -44,6 +46,8 @@ fn entry(value: Value, scene: &Scene, sources: &mut dyn SceneSources) -> Result<
         "wrap" => line.wrap()?,
         "unwrap" => Command::Unwrap { path: line.path("path")? },
         "set_shape" => Command::SetShape { path: line.path("path")?, shape: line.shape()? },
+        "add_stroke" => Command::AddStroke { path: line.path("path")?, stroke: line.stroke()? },
+        "remove_stroke" => Command::RemoveStroke { path: line.path("path")?, index: line.index()? },
         "set_name" => Command::SetName { path: line.path("path")?, name: line.text("name")? },
         "set_color" => Command::SetColor { path: line.path("path")?, color: line.color()? },
         "set_muted" => Command::SetMuted { path: line.path("path")?, muted: line.sign("muted")? },
@@ -124,6 +128,11 @@ impl Line<'_> {
         let shape =
             parameters::need(&mut self.fields, "shape", "what the node becomes, an object with `type`")?;
         self.reader.read_shape(vec![Step::key("shape")], shape)
+    }
+
+    fn stroke(&mut self) -> Result<Arc<BrushStroke>, Fault> {
+        let stroke = parameters::need(&mut self.fields, "stroke", "the stroke, an object with `brush`")?;
+        self.reader.read_stroke(vec![Step::key("stroke")], stroke).map(Arc::new)
     }
 
     fn wrap(&mut self) -> Result<Command, Fault> {

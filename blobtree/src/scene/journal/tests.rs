@@ -9,7 +9,7 @@ use crate::primitive::Primitive;
 use crate::random::{PolygonSources, RandomTree, polygon_template, stroke};
 use crate::scene::{MeshReference, NoSources, Scene, SceneProblem, SceneSources};
 use crate::sketched::{Drawing, Inflation, SketchPlane, Template};
-use crate::support_free::SupportFree;
+use crate::support_free::{BrushKind, BrushStroke, SupportFree};
 use fastrand::Rng;
 use glam::{Vec2, Vec3};
 use mesh::{Mesh, MeshDistance};
@@ -91,7 +91,7 @@ impl OperatorOver for crate::node::Node {
 fn random_entry(rng: &mut Rng, trees: &mut RandomTree, scene: &Scene) -> JournalEntry {
     let (path, node) = place(rng, &scene.root);
     let (parent, index) = (place(rng, &scene.root).0, rng.usize(..4));
-    JournalEntry::Command(match rng.u32(..21) {
+    JournalEntry::Command(match rng.u32(..24) {
         0 | 1 => return JournalEntry::Undo,
         2 => return JournalEntry::Redo,
         3..6 => Command::Insert { parent, index, node: material(rng, trees, scene) },
@@ -108,6 +108,8 @@ fn random_entry(rng: &mut Rng, trees: &mut RandomTree, scene: &Scene) -> Journal
         17 => Command::SetMuted { path, muted: rng.bool() },
         18 => Command::SetConstruction { path, construction: rng.bool() },
         19 => Command::WrapInSupportFree { path, rule: trees.rule() },
+        20 | 21 => Command::AddStroke { path, stroke: Arc::new(trees.stroke()) },
+        22 => Command::RemoveStroke { path, index },
         _ => Command::SetTitle { title: rng.bool().then(|| format!("t{}", rng.u32(..9))) },
     })
 }
@@ -204,6 +206,18 @@ fn every_entry_has_the_line_that_the_format_describes() {
                 rule: SupportFree { overhang_degrees: 50., ..SupportFree::default() },
             },
             r#""do":"wrap","path":"/1","shape":{"type":"support_free","overhang_degrees":50}"#.into(),
+        ),
+        (
+            Command::AddStroke {
+                path: p(),
+                stroke: Arc::new(BrushStroke::new(BrushKind::AddTrim, 2.0, [[0., 0., 1.5]])),
+            },
+            r#""do":"add_stroke","path":"/1","stroke":{"brush":"add_trim","radius":2,"places":[[0,0,1.5]]}"#
+                .into(),
+        ),
+        (
+            Command::RemoveStroke { path: p(), index: 3 },
+            r#""do":"remove_stroke","path":"/1","index":3"#.into(),
         ),
         (Command::Unwrap { path: p() }, r#""do":"unwrap","path":"/1""#.into()),
         (Command::SetName { path: p(), name: None }, r#""do":"set_name","path":"/1""#.into()),

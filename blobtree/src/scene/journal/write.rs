@@ -5,12 +5,18 @@ use crate::document::{Command, JournalEntry, NewShape};
 use crate::node::{Node, NodePath, NodeRef, Shape};
 use crate::scene::check::{measure, numbers};
 use crate::scene::write::{Bare, Definitions, Names, Referred, text_of};
-use crate::scene::{Scene, SceneError, VERSION, bounds};
+use crate::scene::{Scene, SceneError, SceneProblem, VERSION, bounds};
+use crate::support_free::BrushStroke;
 
 /// See [`JournalEntry::to_line`].
 pub(crate) fn write(entry: &JournalEntry, scene: &Scene) -> Result<String, SceneError> {
     let (line, with) = match entry {
-        JournalEntry::Command(command) => parts(command),
+        JournalEntry::Command(command) => {
+            if let Command::AddStroke { stroke, .. } = command {
+                stroke.check("stroke").map_err(SceneProblem::from)?;
+            }
+            parts(command)
+        }
         JournalEntry::Undo => (Line::of("undo"), With::Nothing),
         JournalEntry::Redo => (Line::of("redo"), With::Nothing),
     };
@@ -64,11 +70,17 @@ fn parts(command: &Command) -> (Line<'_>, With<'_>) {
             (Line::at("wrap", path), With::Shape(childless(NewShape::Warp(warp.clone()))))
         }
         Command::WrapInSupportFree { path, rule } => {
-            (Line::at("wrap", path), With::Shape(childless(NewShape::SupportFree(*rule))))
+            (Line::at("wrap", path), With::Shape(childless(NewShape::SupportFree(rule.clone()))))
         }
         Command::Unwrap { path } => plain(Line::at("unwrap", path)),
         Command::SetShape { path, shape } => {
             (Line::at("set_shape", path), With::Shape(childless(shape.clone())))
+        }
+        Command::AddStroke { path, stroke } => {
+            plain(Line { stroke: Some(&**stroke), ..Line::at("add_stroke", path) })
+        }
+        Command::RemoveStroke { path, index } => {
+            plain(Line { index: Some(*index), ..Line::at("remove_stroke", path) })
         }
         Command::SetName { path, name } => {
             plain(Line { name: name.as_deref(), ..Line::at("set_name", path) })
@@ -112,6 +124,8 @@ struct Line<'a> {
     title: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     shape: Option<Bare<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stroke: Option<&'a BrushStroke>,
     #[serde(skip_serializing_if = "Option::is_none")]
     define: Option<Definitions<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]

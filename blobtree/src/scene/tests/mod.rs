@@ -4,6 +4,7 @@ mod broken;
 mod messages;
 mod published;
 mod round_trip;
+mod strokes;
 
 use super::{Scene, SceneError};
 use crate::random::PolygonSources;
