@@ -20,7 +20,7 @@ mod support;
 mod voxels;
 
 pub use brush::{
-    Action, Brush, Dab, DabError, MAX_DABS, PressureRange, StrokeSample, StrokeShape, Tip, stroke,
+    Action, Brush, Dab, DabError, MAX_DABS, PressureRange, StrokeSample, StrokeShape, Tip, dabs_of, stroke,
 };
 pub use rebake::Rebaker;
 pub use rule::{LayerHeight, OverhangAngle, RuleError, SupportRule};

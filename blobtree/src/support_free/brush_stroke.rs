@@ -2,7 +2,7 @@
 
 use super::GROWN_FALLOFF;
 use crate::checks::{ParameterError, number, one_of_length, place};
-use crate::eval::support;
+use crate::eval;
 use crate::field::Aabb;
 use crate::node::{NodeRef, Shape};
 use crate::primitive::Primitive;
@@ -89,7 +89,7 @@ impl BrushTip {
     /// The box outside which a tip of radius 1 is not felt.
     fn support(&self) -> Aabb {
         match self {
-            Self::Shape(node) => support(node),
+            Self::Shape(node) => eval::support(node),
             _ => Aabb::around(Vec3::ZERO, Vec3::ONE),
         }
     }
@@ -238,21 +238,21 @@ pub(super) fn check_all<'a>(
     Ok(())
 }
 
-/// The box in which what strokes add may lie, with its falloff, above a bed at this height.
-pub(super) fn added_within<'a>(strokes: impl Iterator<Item = &'a BrushStroke>, bed: f32) -> Aabb {
-    let one = |stroke: &BrushStroke| {
-        let mut reach = stroke.reach();
-        if stroke.brush == BrushKind::AddGrow && !reach.is_empty() {
-            // Paths run down to the bed, as slanted as they may, and get thicker on their way.
-            let run = 3.0 * (reach.max.z - bed).max(0.0) + stroke.radius;
-            reach.min = (reach.min - Vec3::new(run, run, 0.0)).min(Vec3::splat(f32::INFINITY).with_z(bed));
-            reach.max += Vec3::new(run, run, 0.0);
+/// How much thicker than the tip what grows may become, mm.
+const THICKER: f32 = 1.5;
+
+/// The box in which the solid of a `child` that is brushed over may lie, with its falloff, above a bed at this height.
+pub(super) fn support<'a>(child: &Aabb, strokes: impl Iterator<Item = &'a BrushStroke>, bed: f32) -> Aabb {
+    let mut all = *child;
+    for stroke in strokes.filter(|stroke| stroke.brush.adds()) {
+        all = all.union(&stroke.reach().grown(GROWN_FALLOFF));
+        if stroke.brush == BrushKind::AddGrow && !all.is_empty() {
+            // Paths run down, towards what is there already.
+            all = all.grown(stroke.radius + THICKER + GROWN_FALLOFF);
+            all.min.z = all.min.z.min(bed - GROWN_FALLOFF);
         }
-        reach
-    };
-    let all = strokes.filter(|stroke| stroke.brush.adds()).map(one);
-    let all = all.fold(Aabb::EMPTY, |all, reach| all.union(&reach));
-    if all.is_empty() { all } else { all.grown(GROWN_FALLOFF) }
+    }
+    all
 }
 
 fn holds_mesh(node: &NodeRef) -> bool {

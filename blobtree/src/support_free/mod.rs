@@ -100,13 +100,12 @@ impl SupportFree {
         if self.mode == SupportMode::Off {
             return *child;
         }
-        let brushed = brush_stroke::added_within(self.strokes.iter().map(|stroke| &**stroke), self.bed);
-        if self.mode != SupportMode::Grow || child.is_empty() {
-            return child.union(&brushed);
+        let mut around = *child;
+        if self.mode == SupportMode::Grow && !child.is_empty() {
+            around = child.grown(GROWN_FALLOFF);
+            around.min.z = around.min.z.min(self.bed - GROWN_FALLOFF);
         }
-        let mut around = child.grown(GROWN_FALLOFF);
-        around.min.z = around.min.z.min(self.bed - GROWN_FALLOFF);
-        around.union(&brushed)
+        brush_stroke::support(&around, self.strokes.iter().map(|stroke| &**stroke), self.bed)
     }
 }
 

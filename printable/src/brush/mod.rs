@@ -11,7 +11,7 @@ mod stroke;
 mod tip;
 
 pub use dab::{Action, Brush, stroke};
-pub use stroke::{Dab, DabError, MAX_DABS, PressureRange, StrokeSample, StrokeShape};
+pub use stroke::{Dab, DabError, MAX_DABS, PressureRange, StrokeSample, StrokeShape, dabs_of};
 pub use tip::Tip;
 
 #[cfg(doc)]

@@ -1,5 +1,6 @@
 //! From a pen's samples to dabs.
 
+use blobtree::BrushStroke;
 use glam::Vec3;
 
 /// Most dabs in a stroke.
@@ -79,6 +80,26 @@ impl Dab {
     pub fn strength(&self) -> f32 {
         self.strength
     }
+}
+
+/// The dabs of a stroke as scenes keep it.
+///
+/// Errors: as [`StrokeShape::dabs`].
+pub fn dabs_of(stroke: &BrushStroke) -> Result<Vec<Dab>, DabError> {
+    let shape = StrokeShape {
+        radius: PressureRange { light: stroke.light_radius.unwrap_or(stroke.radius), full: stroke.radius },
+        strength: PressureRange {
+            light: stroke.light_strength.unwrap_or(stroke.strength),
+            full: stroke.strength,
+        },
+        spacing: stroke.spacing.unwrap_or(1.0),
+    };
+    let sample = |(n, place): (usize, &Vec3)| StrokeSample { place: *place, pressure: stroke.pressure(n) };
+    let samples: Vec<StrokeSample> = stroke.places.iter().enumerate().map(sample).collect();
+    if stroke.spacing.is_some() {
+        return shape.dabs(&samples);
+    }
+    samples.iter().map(|sample| shape.dab(sample.place, sample.pressure)).collect()
 }
 
 /// What a quantity is at no pressure and at full pressure; in between it is linear.

@@ -62,7 +62,7 @@ pub(super) fn grow(rebaker: &Rebaker, region: &Region, child: &dyn Field) -> Res
     Ok(bake)
 }
 
-fn sample(
+pub(super) fn sample(
     rebaker: &Rebaker,
     region: &Region,
     child: &dyn Field,

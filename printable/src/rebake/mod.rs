@@ -16,6 +16,7 @@
 
 mod anchor;
 mod bricks;
+mod brush;
 mod dents;
 mod disc;
 mod grow;
@@ -91,6 +92,16 @@ impl Baker for Rebaker<'_> {
             SupportMode::Trim => trim::trim(self, &region, child),
             SupportMode::Grow => grow::grow(self, &region, child),
         }
+    }
+
+    /// - **Promises:** the same bytes for any number of threads. Nothing changes but what the strokes reach, what stands
+    ///   on that, and, for [`AddGrow`](blobtree::BrushKind::AddGrow), the way down from it.
+    /// - **Cost:** that of baking, and for each dab some hundred nanoseconds for each place of the lattice in its tip.
+    ///   Two bytes for each place, ten more where something changed.
+    /// - **Source:** Reiner & Lefebvre 2016, §2.2. **Departs:** on the field, as all here; a column is kept where
+    ///   preserving by erosion would leave nothing, so that what stands above does not fall.
+    fn brush(&self, rule: &SupportFree, node: &dyn Field, bake: Bake) -> Result<Bake, BakeError> {
+        brush::brush(self, rule, node, bake)
     }
 
     /// - **Promises:** only takes away; nothing if no cell size was asked for.

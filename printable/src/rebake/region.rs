@@ -34,7 +34,12 @@ pub(super) struct Region {
 impl Region {
     /// The region in which the solid of `child` lies; none if there is no solid.
     pub fn around_solid(rule: &SupportFree, child: &dyn Field) -> Option<Self> {
-        let support = child.support();
+        Self::around(rule, child, &Aabb::EMPTY)
+    }
+
+    /// The same, with a box in which something may be added.
+    pub fn around(rule: &SupportFree, child: &dyn Field, added: &Aabb) -> Option<Self> {
+        let support = child.support().union(added);
         if support.is_empty() || !(support.min.is_finite() && support.max.is_finite()) {
             return None;
         }
@@ -43,12 +48,23 @@ impl Region {
         let steps = (stretch - 1e-3).ceil().max(1.0);
         let mut spacing = rule.layer_height * stretch / steps;
         let coarse = spacing.max(support.size().max_element() / 200.0);
-        let rough = keys_of_solid(child, &support, coarse)?;
+        let arena = child.support();
+        let solid_in = |arena: &Aabb, spacing: f32| match arena.is_empty() {
+            true => *added,
+            false => keys_of_solid(child, arena, spacing).map_or(*added, |solid| solid.union(added)),
+        };
+        let rough = solid_in(&arena, coarse);
+        if rough.is_empty() {
+            return None;
+        }
         let size = rough.size().as_dvec3() + f64::from(2 * MARGIN) * f64::from(spacing);
         let along = size.max_element() / f64::from(spacing);
         let places = size.element_product() / f64::from(spacing).powi(3);
         spacing *= (places / MOST_PLACES).cbrt().max(along / MOST_ALONG).max(1.0) as f32;
-        let solid = if spacing == coarse { rough } else { keys_of_solid(child, &rough, spacing)? };
+        let solid = if spacing == coarse { rough } else { solid_in(&rough.intersection(&arena), spacing) };
+        if solid.is_empty() {
+            return None;
+        }
         let index = |x: f32| (x / spacing).round() as i32;
         let low = solid.min.to_array().map(|x| index(x) - MARGIN);
         let high = solid.max.to_array().map(|x| index(x) + MARGIN);

@@ -7,19 +7,19 @@ use super::volume::Volume;
 use blobtree::{GROWN_FALLOFF, ISO};
 
 /// Radius at the top, in lattice steps: wide enough to be seen by the lattice.
-const THINNEST: f32 = 1.8;
+pub(super) const THINNEST: f32 = 1.8;
 
 /// Most by which a radius grows, mm.
-const THICKER_MM: f32 = 1.5;
+pub(super) const THICKER_MM: f32 = 1.5;
 
 /// By how much it grows with each step down.
-const TAPER: f32 = 0.04;
+pub(super) const TAPER: f32 = 0.04;
 
 /// Layers above and below over which a path is smoothed.
-const SMOOTHED: usize = 4;
+pub(super) const SMOOTHED: usize = 4;
 
 /// Layers by which a strut goes on into what it stands on.
-const ROOT: usize = 6;
+pub(super) const ROOT: usize = 6;
 
 /// A column: its middle and radius in each layer from the highest down, in lattice steps.
 #[derive(Debug)]

@@ -51,6 +51,11 @@ impl Volume {
         f32::from(self.values[x + self.sides[0] * (y + self.sides[1] * z)]) / STEPS
     }
 
+    /// Sets the value at a place.
+    pub fn set(&mut self, [x, y, z]: [usize; 3], value: f32) {
+        self.values[x + self.sides[0] * (y + self.sides[1] * z)] = (value * STEPS).round() as u16;
+    }
+
     /// Raises the value at a place to at least `value`.
     pub fn raise(&mut self, [x, y, z]: [usize; 3], value: f32) {
         let own = &mut self.values[x + self.sides[0] * (y + self.sides[1] * z)];

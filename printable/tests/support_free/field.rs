@@ -19,7 +19,7 @@ fn trees() -> impl Iterator<Item = (u64, Tree)> {
         let mut node = match seed % 4 {
             0 => ball_on_stem(3.0, 9.0).support_free(trimming(45.0, 0.5)),
             1 => ball_on_stem(3.0, 9.0).support_free(growing(50.0, 0.5)),
-            _ => random.tree().support_free(rule),
+            _ => random.tree().support_free(rule.clone()),
         };
         if seed % 3 > 0 {
             node = node

@@ -1,5 +1,6 @@
 //! What a support-free node promises, judged by closed forms and by brute force.
 
+mod brushes;
 mod common;
 mod field;
 mod grow;

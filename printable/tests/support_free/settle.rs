@@ -11,7 +11,7 @@ use printable::{Rebaker, SupportRule};
 /// The print check of a shape's mesh in cells as wide as layers are high; and what was taken away, mm³.
 fn settled(shape: Node, rule: SupportFree) -> (PrintCheck, f64) {
     let cell = CellSize::from_mm(rule.layer_height).expect("legal");
-    let root: NodeRef = shape.support_free(rule).into();
+    let root: NodeRef = shape.support_free(rule.clone()).into();
     let mut store = BakeStore::new();
     let tree = store.tree(&root, &Rebaker::new().settling(cell)).expect("it can be baked");
     let mesh = Surface::build(&tree, cell, &Options::default()).expect("small").mesh();
@@ -47,7 +47,7 @@ fn shapes() -> [(&'static str, Node); 4] {
 fn settled_shapes_are_support_free_in_the_eyes_of_the_print_check() {
     for (name, shape) in shapes() {
         for rule in [trimming(45.0, 0.25), growing(45.0, 0.25)] {
-            let (check, _) = settled(shape.clone(), rule);
+            let (check, _) = settled(shape.clone(), rule.clone());
             let worst = check.findings.first().map(ToString::to_string);
             assert!(check.is_support_free(), "{name}, {:?}: {worst:?}", rule.mode);
         }

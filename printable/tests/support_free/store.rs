@@ -45,7 +45,8 @@ fn what_nobody_baked_is_said_to_be_unconstrained() {
 #[test]
 fn one_thread_and_three_bake_the_same_bytes() {
     for rule in [trimming(45.0, 0.25), growing(50.0, 0.4)] {
-        let root: NodeRef = ball_on_stem(2.0, 5.0).translate([0.3, 0.1, 0.]).support_free(rule).into();
+        let root: NodeRef =
+            ball_on_stem(2.0, 5.0).translate([0.3, 0.1, 0.]).support_free(rule.clone()).into();
         let baked = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a few threads");
             let mut store = BakeStore::new();

@@ -1,0 +1,188 @@
+//! The solid while it is brushed: a field that is raised and lowered.
+//!
+//! With f the field before all brushes, it is `min(max(f, grown), limit)` at every place. Raising it to t makes
+//! `grown` and `limit` at least t, lowering it to t makes `limit` at most t; so the two say all that was done.
+
+use super::stamp::Block;
+use crate::rebake::TOP;
+use crate::rebake::disc::Layer;
+use crate::rebake::volume::Volume;
+
+/// By how much a place must change to count as changed.
+pub(super) const FELT: f32 = 1e-3;
+
+/// Places along each side of a page.
+const PAGE: usize = 16;
+
+/// Values of a region, kept in pages where they are not all the same.
+#[derive(Debug)]
+pub(super) struct Paged {
+    background: f32,
+    pages_along: [usize; 3],
+    pages: Vec<Option<Box<[f32; PAGE * PAGE * PAGE]>>>,
+}
+
+impl Paged {
+    fn new(sides: [usize; 3], background: f32) -> Self {
+        let pages_along = sides.map(|side| side.div_ceil(PAGE));
+        Self { background, pages_along, pages: vec![None; pages_along.iter().product()] }
+    }
+
+    fn find(&self, at: [usize; 3]) -> (usize, usize) {
+        let page = at.map(|i| i / PAGE);
+        let [x, y, z] = at.map(|i| i % PAGE);
+        let page = page[0] + self.pages_along[0] * (page[1] + self.pages_along[1] * page[2]);
+        (page, x + PAGE * (y + PAGE * z))
+    }
+
+    pub fn value(&self, at: [usize; 3]) -> f32 {
+        let (page, within) = self.find(at);
+        self.pages[page].as_ref().map_or(self.background, |page| page[within])
+    }
+
+    fn set(&mut self, at: [usize; 3], value: f32) {
+        let (page, within) = self.find(at);
+        if self.pages[page].is_some() || value != self.background {
+            let background = self.background;
+            self.pages[page].get_or_insert_with(|| Box::new([background; PAGE * PAGE * PAGE]))[within] =
+                value;
+        }
+    }
+
+    /// The value where no page is.
+    pub fn background(&self) -> f32 {
+        self.background
+    }
+
+    /// Whether a value in this layer is not the background.
+    pub fn is_felt_in(&self, layer: usize) -> bool {
+        let plane = self.pages_along[0] * self.pages_along[1];
+        let pages = self.pages[layer / PAGE * plane..][..plane].iter().flatten();
+        let start = layer % PAGE * PAGE * PAGE;
+        let own = |page: &[f32; PAGE * PAGE * PAGE]| {
+            page[start..start + PAGE * PAGE].iter().any(|value| *value != self.background)
+        };
+        pages.into_iter().any(|page| own(page))
+    }
+
+    /// Whether all of the pages in this layer are background.
+    pub fn is_plain(&self, layer: usize) -> bool {
+        let plane = self.pages_along[0] * self.pages_along[1];
+        self.pages[layer / PAGE * plane..][..plane].iter().all(Option::is_none)
+    }
+}
+
+/// Places of a layer, in a block of one layer, that changed.
+#[derive(Clone, Debug)]
+pub(super) struct Changed {
+    pub block: Block,
+    pub places: Vec<bool>,
+}
+
+impl Changed {
+    /// Those of a block that covers both.
+    pub fn with(self, other: Self) -> Self {
+        let block = self.block.joined(&other.block);
+        let mut places = vec![false; block.sides().iter().product()];
+        for part in [&self, &other] {
+            part.each(|at| places[block.index(at)] = true);
+        }
+        Self { block, places }
+    }
+
+    /// Calls `found` for all places that changed.
+    pub fn each(&self, mut found: impl FnMut([usize; 3])) {
+        let [width, ..] = self.block.sides();
+        let [low_x, low_y, z] = self.block.low;
+        for (n, _) in self.places.iter().enumerate().filter(|(_, changed)| **changed) {
+            found([low_x + n % width, low_y + n / width, z]);
+        }
+    }
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct Canvas {
+    pub value: Volume,
+    pub grown: Paged,
+    pub limit: Paged,
+}
+
+impl Canvas {
+    /// One that nothing was done to.
+    pub fn new(value: Volume) -> Self {
+        let sides = value.sides;
+        Self { value, grown: Paged::new(sides, 0.0), limit: Paged::new(sides, TOP) }
+    }
+
+    pub fn sides(&self) -> [usize; 3] {
+        self.value.sides
+    }
+
+    /// Raises the places of a block of one layer to these values; tells which rose.
+    pub fn raise(&mut self, block: &Block, to: &[f32]) -> Option<Changed> {
+        self.change(block, to, |canvas, at, to| {
+            if to <= 0.0 {
+                return false;
+            }
+            let to = to.min(TOP);
+            let before = canvas.value.value(at);
+            canvas.grown.set(at, canvas.grown.value(at).max(to));
+            if canvas.limit.value(at) < to {
+                canvas.limit.set(at, to);
+            }
+            if to > before {
+                canvas.value.set(at, to);
+            }
+            to > before + FELT
+        })
+    }
+
+    /// Lowers the places of a block of one layer to these values; tells which fell.
+    pub fn lower(&mut self, block: &Block, to: &[f32]) -> Option<Changed> {
+        self.change(block, to, |canvas, at, to| {
+            if to >= TOP {
+                return false;
+            }
+            let before = canvas.value.value(at);
+            canvas.limit.set(at, canvas.limit.value(at).min(to));
+            if to < before {
+                canvas.value.set(at, to.max(0.0));
+            }
+            to < before - FELT
+        })
+    }
+
+    fn change(
+        &mut self,
+        block: &Block,
+        to: &[f32],
+        change: impl Fn(&mut Self, [usize; 3], f32) -> bool,
+    ) -> Option<Changed> {
+        let mut places = vec![false; to.len()];
+        let [width, ..] = block.sides();
+        let mut any = false;
+        for (n, to) in to.iter().enumerate() {
+            let at = [block.low[0] + n % width, block.low[1] + n / width, block.low[2]];
+            places[n] = change(self, at, *to);
+            any |= places[n];
+        }
+        any.then_some(Changed { block: *block, places })
+    }
+
+    /// The values around a block of one layer in another layer, `margin` places wider; beyond the region the nearest
+    /// value goes on.
+    pub fn window(&self, block: &Block, layer: usize, margin: usize) -> Layer {
+        let [width, depth, _] = block.sides();
+        let mut window = Layer::new(width + 2 * margin, depth + 2 * margin, 0.0);
+        let [nx, ny, _] = self.sides();
+        let clamped = |low: usize, i: usize, most: usize| (low + i).saturating_sub(margin).min(most - 1);
+        for (y, row) in window.values.chunks_exact_mut(width + 2 * margin).enumerate() {
+            let y = clamped(block.low[1], y, ny);
+            for (x, value) in row.iter_mut().enumerate() {
+                *value = self.value.value([clamped(block.low[0], x, nx), y, layer]);
+            }
+        }
+        window
+    }
+}

@@ -1,0 +1,318 @@
+//! What the five brushes do with a field, dab by dab: what they do with voxels, at every level of the field at once.
+
+use super::canvas::{Canvas, Changed};
+use super::grow::along_path;
+use super::stamp::{Block, Lattice, Shape, Stamp};
+use crate::Dab;
+use crate::rebake::anchor::lift;
+use crate::rebake::disc::{Layer, dilate_row};
+use crate::rebake::path_map::PathMap;
+use crate::rebake::strut::THINNEST;
+use crate::rebake::{REACH, TOP};
+use blobtree::{BrushKind, ISO};
+
+/// How far a layer is looked at around a block: as far as [`lift`] looks, and a step more.
+const AROUND: usize = 4;
+
+/// By how much what is kept below something leans inwards, in lattice steps for a layer: enough less than the reach
+/// that nothing of it is taken again.
+const LEAN: f32 = 0.88;
+
+/// How far from what carries it a place may be, in lattice steps, before a column is kept below it.
+const FAR: f32 = 1.6;
+
+/// How far inside a smoothing tip smoothing has its full effect, in values of the tip.
+const RIM: f32 = 0.1;
+
+/// A brush in hand.
+pub(super) struct Hand<'a> {
+    pub kind: BrushKind,
+    pub shape: &'a Shape,
+    pub lattice: &'a Lattice,
+    /// Where matter grows down to.
+    pub paths: Option<&'a PathMap>,
+}
+
+impl Hand<'_> {
+    /// Puts the brush down once.
+    pub fn dab(&self, canvas: &mut Canvas, dab: &Dab) {
+        let Some(stamp) = self.lattice.stamp(self.shape, dab) else { return };
+        match self.kind {
+            BrushKind::AddTrim => {
+                let near = near_surface(canvas, &stamp, self.reach_of(dab), true);
+                add(canvas, &near.unwrap_or(stamp));
+            }
+            BrushKind::AddGrow => {
+                let near = near_surface(canvas, &stamp, self.reach_of(dab), true);
+                let stamp = near.unwrap_or(stamp);
+                let all = match self.paths {
+                    Some(paths) => along_path(canvas, self.lattice, self.shape, dab, paths, stamp),
+                    None => stamp,
+                };
+                add(canvas, &all);
+            }
+            BrushKind::RemoveTrim => {
+                let carve = self.carve(canvas, &stamp, dab);
+                let changed = carve_from_below(canvas, &carve);
+                topple(canvas, carve.block.low[2], changed);
+            }
+            BrushKind::RemovePreserve => {
+                let carve = self.carve(canvas, &stamp, dab);
+                let changed = carve_and_keep(canvas, &carve);
+                topple(canvas, carve.block.low[2], changed);
+            }
+            BrushKind::SmoothTrim => {
+                for _ in 0..(3.0 * dab.strength()).ceil() as usize {
+                    smooth(canvas, &stamp);
+                }
+            }
+        }
+    }
+
+    /// How far the surface moves at most, in lattice steps along x and y and along z; none if as far as it likes.
+    fn reach_of(&self, dab: &Dab) -> Option<[usize; 2]> {
+        let far = dab.strength() * dab.radius();
+        (dab.strength() < 1.0).then(|| self.lattice.steps().map(|step| (far / step).round() as usize))
+    }
+
+    /// The limit that a dab carves with.
+    fn carve(&self, canvas: &Canvas, stamp: &Stamp, dab: &Dab) -> Stamp {
+        let near = near_surface(canvas, stamp, self.reach_of(dab), false);
+        let values = &near.as_ref().unwrap_or(stamp).values;
+        Stamp { block: stamp.block, values: values.iter().map(|value| 1.0 - value).collect() }
+    }
+}
+
+/// What the layer below carries of a block of one layer.
+fn carried(canvas: &Canvas, block: &Block) -> Vec<f32> {
+    let [width, depth, _] = block.sides();
+    let Some(below) = block.low[2].checked_sub(1) else { return vec![TOP; width * depth] };
+    let mut window = canvas.window(block, below, AROUND);
+    lift(&mut window);
+    inner(&window, width, depth, |layer, y, row| dilate_row(layer, y, REACH, row))
+}
+
+/// Rows of a window without its margin.
+fn inner(
+    window: &Layer,
+    width: usize,
+    depth: usize,
+    mut row_of: impl FnMut(&Layer, usize, &mut [f32]),
+) -> Vec<f32> {
+    let mut row = vec![0.0; window.width];
+    let mut all = Vec::with_capacity(width * depth);
+    for y in 0..depth {
+        row_of(window, y + AROUND, &mut row);
+        all.extend_from_slice(&row[AROUND..AROUND + width]);
+    }
+    all
+}
+
+/// One layer of a block.
+fn layer_of(block: &Block, z: usize) -> Block {
+    let mut layer = *block;
+    (layer.low[2], layer.end[2]) = (z, z + 1);
+    layer
+}
+
+/// Adds what of a stamp is carried, from below.
+fn add(canvas: &mut Canvas, stamp: &Stamp) {
+    for z in stamp.block.low[2]..stamp.block.end[2] {
+        let block = layer_of(&stamp.block, z);
+        let mut to = carried(canvas, &block);
+        to.iter_mut().zip(stamp.layer(z)).for_each(|(to, value)| *to = to.min(*value));
+        canvas.raise(&block, &to);
+    }
+}
+
+/// What changed in each layer of a block, from its lowest.
+type Changes = Vec<Option<Changed>>;
+
+fn carve_from_below(canvas: &mut Canvas, carve: &Stamp) -> Changes {
+    let layers = carve.block.low[2]..carve.block.end[2];
+    layers.map(|z| canvas.lower(&layer_of(&carve.block, z), carve.layer(z))).collect()
+}
+
+/// Carves, but for what carries the solid above: from above, each layer keeps at least the one above, eroded; and
+/// where that leaves nothing, a column.
+fn carve_and_keep(canvas: &mut Canvas, carve: &Stamp) -> Changes {
+    let mut changes: Changes = Vec::new();
+    for z in (carve.block.low[2]..carve.block.end[2]).rev() {
+        let block = layer_of(&carve.block, z);
+        let [width, depth, _] = block.sides();
+        let mut to = carve.layer(z).to_vec();
+        if z + 1 < canvas.sides()[2] {
+            let mut negative = canvas.window(&block, z + 1, AROUND);
+            negative.values.iter_mut().for_each(|value| *value = -*value);
+            let needed = inner(&negative, width, depth, |layer, y, row| dilate_row(layer, y, LEAN, row));
+            to.iter_mut().zip(needed).for_each(|(to, needed)| *to = to.max(-needed));
+            keep_columns(canvas, &block, &mut to);
+        }
+        changes.push(canvas.lower(&block, &to));
+    }
+    changes.reverse();
+    changes
+}
+
+/// Raises a limit where the layer above would have nothing within reach.
+fn keep_columns(canvas: &Canvas, block: &Block, to: &mut [f32]) {
+    let [width, depth, _] = block.sides();
+    let above = canvas.window(block, block.low[2] + 1, 0);
+    let own = canvas.window(block, block.low[2], AROUND);
+    let solid = |x: isize, y: isize| {
+        let inside = (0..width as isize).contains(&x) && (0..depth as isize).contains(&y);
+        let value = own.row(y + AROUND as isize)[(x + AROUND as isize) as usize];
+        value >= ISO && (!inside || to[x as usize + width * y as usize] >= ISO)
+    };
+    let reach = FAR.ceil() as isize;
+    let is_carried = |x: isize, y: isize| {
+        (-reach..=reach)
+            .any(|dy| (-reach..=reach).any(|dx| (dx as f32).hypot(dy as f32) <= FAR && solid(x + dx, y + dy)))
+    };
+    // Groups of hanging places, each with the sum of its places.
+    let mut groups: Vec<([f32; 2], f32, [f32; 2])> = Vec::new();
+    for (n, value) in above.values.iter().enumerate() {
+        let (x, y) = (n % width, n / width);
+        if *value < ISO || is_carried(x as isize, y as isize) {
+            continue;
+        }
+        let at = [x as f32, y as f32];
+        let near = |(first, ..): &&mut ([f32; 2], f32, [f32; 2])| {
+            (first[0] - at[0]).hypot(first[1] - at[1]) < 3.0 * FAR
+        };
+        match groups.iter_mut().rev().find(near) {
+            Some((_, count, sum)) => {
+                *count += 1.0;
+                *sum = [sum[0] + at[0], sum[1] + at[1]];
+            }
+            None => groups.push((at, 1.0, at)),
+        }
+    }
+    for (_, count, sum) in groups {
+        let middle = sum.map(|sum| sum / count);
+        for (n, to) in to.iter_mut().enumerate() {
+            let distance = ((n % width) as f32 - middle[0]).hypot((n / width) as f32 - middle[1]);
+            *to = to.max((ISO + 0.125 * (THINNEST - distance)).min(TOP));
+        }
+    }
+}
+
+/// Takes away what lost what carried it, layer by layer. `changes` are those from layer `low` on.
+fn topple(canvas: &mut Canvas, low: usize, changes: Changes) {
+    let mut below: Option<Changed> = None;
+    let mut changes = changes.into_iter();
+    for z in low..canvas.sides()[2] {
+        let own = changes.next();
+        if own.is_none() && below.is_none() {
+            return;
+        }
+        let toppled = below.as_ref().and_then(|below| drop_unsupported(canvas, below, z));
+        below = match (own.flatten(), toppled) {
+            (Some(own), Some(toppled)) => Some(own.with(toppled)),
+            (own, toppled) => own.or(toppled),
+        };
+    }
+}
+
+/// Lowers what is above changed places to what is carried there now.
+fn drop_unsupported(canvas: &mut Canvas, below: &Changed, z: usize) -> Option<Changed> {
+    let [nx, ny, _] = canvas.sides();
+    let Block { low, end } = below.block;
+    let block = Block {
+        low: [low[0].saturating_sub(2), low[1].saturating_sub(2), z],
+        end: [(end[0] + 2).min(nx), (end[1] + 2).min(ny), z + 1],
+    };
+    let [width, ..] = block.sides();
+    let mut doubtful = vec![false; block.sides().iter().product()];
+    below.each(|[x, y, _]| {
+        for y in y.saturating_sub(1).max(block.low[1])..(y + 2).min(block.end[1]) {
+            for x in x.saturating_sub(1).max(block.low[0])..(x + 2).min(block.end[0]) {
+                doubtful[block.index([x, y, z])] = true;
+            }
+        }
+    });
+    let mut to = carried(canvas, &block);
+    for (n, to) in to.iter_mut().enumerate() {
+        if !doubtful[n] {
+            // What lost nothing stays; the limit beside it goes on smoothly.
+            let at = [block.low[0] + n % width, block.low[1] + n / width, z];
+            *to = to.max(canvas.value.value(at));
+        }
+    }
+    canvas.lower(&block, &to)
+}
+
+/// One pass: the tip's places go with the mean of the 27 around them.
+fn smooth(canvas: &mut Canvas, stamp: &Stamp) {
+    let layers = stamp.block.low[2]..stamp.block.end[2];
+    let top = canvas.sides()[2] - 1;
+    let targets: Vec<Vec<f32>> = layers
+        .clone()
+        .map(|z| {
+            let block = layer_of(&stamp.block, z);
+            let [width, ..] = block.sides();
+            let around = [z.saturating_sub(1), z, (z + 1).min(top)];
+            let windows = around.map(|z| canvas.window(&block, z, 1));
+            let target = |(n, tip): (usize, &f32)| {
+                let (x, y) = (n % width, n / width);
+                let row =
+                    |layer: &Layer, dy: usize| layer.row((y + dy) as isize)[x..x + 3].iter().sum::<f32>();
+                let sum: f32 = windows.iter().map(|layer| (0..3).map(|dy| row(layer, dy)).sum::<f32>()).sum();
+                let own = windows[1].row(y as isize + 1)[x + 1];
+                let share = ((tip - ISO) / RIM).clamp(0.0, 1.0);
+                own + share * (sum / 27.0 - own)
+            };
+            stamp.layer(z).iter().enumerate().map(target).collect()
+        })
+        .collect();
+    let mut changes: Changes = Vec::new();
+    for (z, target) in layers.zip(&targets) {
+        let block = layer_of(&stamp.block, z);
+        let mut up = carried(canvas, &block);
+        up.iter_mut().zip(target).for_each(|(up, target)| *up = up.min(*target));
+        canvas.raise(&block, &up);
+        changes.push(canvas.lower(&block, target));
+    }
+    topple(canvas, stamp.block.low[2], changes);
+}
+
+/// The part of a stamp that is within reach of the surface: outside the solid when adding, inside when not, which is
+/// the solid, or the air around it, widened step by step. None if the whole stamp counts.
+fn near_surface(canvas: &Canvas, stamp: &Stamp, reach: Option<[usize; 2]>, adding: bool) -> Option<Stamp> {
+    let [wide, high] = reach?;
+    let block = stamp.block;
+    let [width, depth, layers] = block.sides();
+    let plane = width * depth;
+    let sign = |value: f32| if adding { value } else { 1.0 - value };
+    let mut near: Vec<f32> = Vec::with_capacity(plane * layers);
+    for z in block.low[2]..block.end[2] {
+        near.extend(canvas.window(&layer_of(&block, z), z, 0).values.iter().map(|value| sign(*value)));
+    }
+    let steps = wide.max(high);
+    for step in 0..steps {
+        let takes = |most: usize| (step + 1) * most / steps > step * most / steps;
+        let mut next = near.clone();
+        if takes(wide) {
+            for (from, to) in near.chunks_exact(plane).zip(next.chunks_exact_mut(plane)) {
+                let layer = Layer { width, values: from.to_vec() };
+                to.chunks_exact_mut(width).enumerate().for_each(|(y, row)| dilate_row(&layer, y, 1.0, row));
+            }
+        }
+        if takes(high) {
+            for z in 0..layers {
+                for beside in [z.checked_sub(1), (z + 1 < layers).then_some(z + 1)].into_iter().flatten() {
+                    let from = &near[beside * plane..][..plane];
+                    let to = &mut next[z * plane..][..plane];
+                    to.iter_mut().zip(from).for_each(|(to, from)| *to = to.max(*from));
+                }
+            }
+            // The bed counts as solid.
+            if adding && block.low[2] == 0 {
+                next[..plane].fill(1.0);
+            }
+        }
+        near = next;
+    }
+    near.iter_mut().zip(&stamp.values).for_each(|(near, tip)| *near = near.min(*tip));
+    Some(Stamp { block, values: near })
+}
