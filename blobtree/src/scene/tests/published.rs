@@ -92,9 +92,10 @@ fn the_json_on_the_page_can_be_read() {
 
 #[test]
 fn every_example_is_read_and_written_as_it_is() {
-    let folder = repository().join("examples");
+    let folders = ["examples", "examples/sculpted"].map(|folder| repository().join(folder));
     let mut names = BTreeSet::new();
-    for entry in fs::read_dir(folder).expect("the examples are there") {
+    for entry in folders.into_iter().flat_map(|folder| fs::read_dir(folder).expect("the examples are there"))
+    {
         let path = entry.expect("readable").path();
         if path.extension().is_some_and(|extension| extension == "trullo") {
             let scene = read(&fs::read_to_string(&path).expect("readable"));
@@ -110,6 +111,8 @@ fn every_example_is_read_and_written_as_it_is() {
         "dice",
         "dog-head",
         "forest",
+        "pumpkin",
+        "shaun",
         "snowman",
         "twisted-vase",
         "two-blobs",
