@@ -21,6 +21,9 @@ const LEAN: f32 = 0.88;
 /// How far from what carries it a place may be, in lattice steps, before a column is kept below it.
 const FAR: f32 = 1.6;
 
+/// By how much limits stay away from what they leave alone: more than the filter of the image takes from them.
+const BESIDE: f32 = 0.03;
+
 /// How far inside a smoothing tip smoothing has its full effect, in values of the tip.
 const RIM: f32 = 0.1;
 
@@ -236,7 +239,7 @@ fn drop_unsupported(canvas: &mut Canvas, below: &Changed, z: usize) -> Option<Ch
         if !doubtful[n] {
             // What lost nothing stays; the limit beside it goes on smoothly.
             let at = [block.low[0] + n % width, block.low[1] + n / width, z];
-            *to = to.max(canvas.value.value(at));
+            *to = to.max(canvas.value.value(at) + BESIDE);
         }
     }
     canvas.lower(&block, &to)
@@ -269,9 +272,14 @@ fn smooth(canvas: &mut Canvas, stamp: &Stamp) {
     for (z, target) in layers.zip(&targets) {
         let block = layer_of(&stamp.block, z);
         let mut up = carried(canvas, &block);
-        up.iter_mut().zip(target).for_each(|(up, target)| *up = up.min(*target));
+        let mut down = target.clone();
+        for (n, tip) in stamp.layer(z).iter().enumerate() {
+            let beside = if *tip > ISO { 0.0 } else { BESIDE };
+            up[n] = up[n].min(target[n] - beside);
+            down[n] += beside;
+        }
         canvas.raise(&block, &up);
-        changes.push(canvas.lower(&block, target));
+        changes.push(canvas.lower(&block, &down));
     }
     topple(canvas, stamp.block.low[2], changes);
 }
