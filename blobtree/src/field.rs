@@ -109,6 +109,17 @@ impl Dirty for Aabb {
     }
 }
 
+/// Several places at once.
+impl Dirty for Vec<Aabb> {
+    fn bounds(&self) -> Aabb {
+        self.iter().fold(Aabb::EMPTY, |all, each| all.union(each))
+    }
+
+    fn touch(&self) -> Box<dyn FnMut(&Aabb) -> bool + '_> {
+        Box::new(|region| self.iter().any(|each| each.overlaps(region)))
+    }
+}
+
 /// A closed range of field values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {

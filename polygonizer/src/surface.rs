@@ -103,8 +103,8 @@ impl Surface {
     /// Follows `field` after an edit that it can be felt in `dirty` only: then the surface equals a fresh
     /// one, bit for bit.
     ///
-    /// - **In:** `dirty` must hold every point where values *or* bounds changed: [`blobtree::ChangedPlaces`], or a
-    ///   box around what was edited, before and after.
+    /// - **In:** `dirty` must hold every point where values *or* bounds changed: [`blobtree::ChangedPlaces`], a
+    ///   box around what was edited, before and after, or several boxes.
     /// - **Errors:** as [`Self::build`]; the surface is unchanged then.
     /// - **Cost:** proportional to the bricks that `dirty` touches.
     pub fn update(

@@ -62,6 +62,25 @@ fn after_random_edits_an_updated_surface_equals_a_fresh_one_exactly() {
     }
 }
 
+#[test]
+fn an_update_of_several_boxes_equals_a_fresh_surface_exactly() {
+    for seed in 0..4 {
+        let mut random = Random(seed);
+        let mut parts: Vec<_> = (0..7).map(|_| random_part(&mut random)).collect();
+        let options = Options::default();
+        let mut surface = Surface::build(&body(&parts), cell(0.31), &options).expect("small");
+        let mut dirty = Vec::new();
+        for part in parts.iter_mut().skip(1).step_by(2) {
+            let before = body(&[*part]).support();
+            *part = random_part(&mut random);
+            dirty.extend([before, body(&[*part]).support()]);
+        }
+        surface.update(&body(&parts), &dirty, &options).expect("small");
+        let fresh = Surface::build(&body(&parts), cell(0.31), &options).expect("small");
+        assert!(surface == fresh, "seed {seed}: the update differs");
+    }
+}
+
 /// Against the contract of `update`, so it need not be right; but it must not be the end.
 #[test]
 fn an_update_with_too_small_a_box_does_no_harm_that_the_next_cannot_mend() {
