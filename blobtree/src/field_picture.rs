@@ -15,6 +15,9 @@ const STEP: f32 = 0.1;
 const LINE: f32 = 1.1;
 const SURFACE: f32 = 2.6;
 
+/// Where a value changes less than this from a pixel to the next, there is no thin line: it would be a blot.
+const FLAT: f32 = 0.002;
+
 /// The colours of nothing, of the solid's middle, and of lines, sRGB.
 const NOTHING: [f32; 3] = [251.0, 250.0, 246.0];
 const FULL: [f32; 3] = [47.0, 125.0, 225.0];
@@ -101,7 +104,7 @@ fn color(value: f32, slope: f32) -> [u8; 3] {
     let nearest = (value / STEP).round() * STEP;
     let off = |level: f32| (value - level).abs() / slope.max(1e-6);
     let cover = |level: f32, wide: f32| (0.5 * wide + 0.5 - off(level)).clamp(0.0, 1.0);
-    let line = if nearest > 0.5 * STEP { 0.35 * cover(nearest, LINE) } else { 0.0 };
+    let line = if nearest > 0.5 * STEP && slope > FLAT { 0.35 * cover(nearest, LINE) } else { 0.0 };
     let ink = line.max(cover(ISO, SURFACE));
     let share = value.clamp(0.0, 1.0);
     std::array::from_fn(|i| {

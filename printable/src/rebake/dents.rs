@@ -1,6 +1,7 @@
 //! Dents: places where the field is lowered a little, on a lattice twice as fine as that of the limit.
 
 use super::TOP;
+use super::cone::{Depths, Known, deepen};
 use super::hanging::Piece;
 use blobtree::{
     Aabb, Beyond, Brick, Field, ISO, ParameterError, Sample, Sampler, SupportFree, VOXEL_BRICK,
@@ -27,18 +28,6 @@ const ISLAND_MARGIN_MM: f32 = 0.03;
 
 const SIDE: usize = VOXEL_BRICK + 2;
 
-/// Samples along each side of what is looked at for a brick: one more again, to sharpen by.
-const WIDE: usize = SIDE + 2;
-
-/// Dents close together, not yet made.
-#[derive(Debug)]
-pub(super) struct Pressed {
-    /// A box in the node's own space, outside which they are not felt.
-    pub dirty: Aabb,
-    /// Keys and samples of bricks.
-    bricks: Vec<([i32; 3], Vec<f32>)>,
-}
-
 /// A limit that consists of dents.
 #[derive(Debug)]
 pub(super) struct Dents {
@@ -62,43 +51,44 @@ impl Dents {
         f64::from(self.spacing)
     }
 
-    /// What is to be made for `node`, in its own space, to be lower where pieces of it hang.
-    pub fn press(&self, node: &dyn Field, pieces: &[Piece]) -> Vec<Pressed> {
-        let depths = self.depths(node, pieces);
+    /// Lowers `node`, in its own space, where pieces of it hang; says in which boxes that can be felt.
+    pub fn press(&mut self, node: &dyn Field, pieces: &[Piece]) -> Vec<Aabb> {
+        let mut depths = self.depths(node, pieces);
+        let node_from_upright = self.upright_from_node.inverse();
+        let spacing = self.spacing;
+        let mut known = Known::new(node, |[z, y, x]: [i32; 3]| {
+            let upright = Brick::lattice_point([x, y, z], spacing).as_dvec3();
+            node_from_upright.transform_point3(upright).as_vec3()
+        });
+        known.follow(&mut depths);
+        known.look(depths.keys().flat_map(|at| with_beside(*at)));
         let mut keys = BTreeSet::new();
-        for place in depths.keys() {
+        for [z, y, x] in depths.keys() {
             // Samples beside a brick's own are kept in it, too.
-            let near = |a: usize| [-1, 1].map(|by| (place[a] + by).div_euclid(VOXEL_BRICK as i32));
-            for z in near(2) {
-                for y in near(1) {
-                    keys.extend(near(0).map(|x| [x, y, z]));
+            let near = |at: i32| [-1, 1].map(|by| (at + by).div_euclid(VOXEL_BRICK as i32));
+            for z in near(*z) {
+                for y in near(*y) {
+                    keys.extend(near(*x).map(|x| [x, y, z]));
                 }
             }
         }
-        let press = |sampler: &mut Box<dyn Sampler + '_>, cluster: Vec<[i32; 3]>| {
-            let dirty = self.reach_of(&cluster);
-            let pressed = |key| (key, self.pressed(&mut **sampler, key, &depths));
-            Pressed { dirty, bricks: cluster.into_iter().map(pressed).collect() }
-        };
-        clusters(keys).into_par_iter().map_init(|| node.sampler(), press).collect()
-    }
-
-    /// Makes dents.
-    pub fn add(&mut self, pressed: &Pressed) {
-        for (key, pressed) in &pressed.bricks {
+        let keys: Vec<[i32; 3]> = keys.into_iter().collect();
+        let pressed: Vec<Vec<f32>> =
+            keys.par_iter().map(|key| pressed(*key, &depths, |at| known.value(at))).collect();
+        for (key, pressed) in keys.iter().zip(pressed) {
             let samples = self.bricks.entry(*key).or_insert_with(|| vec![TOP; VOXEL_SAMPLES]);
-            samples.iter_mut().zip(pressed).for_each(|(sample, pressed)| *sample = sample.min(*pressed));
+            samples.iter_mut().zip(pressed).for_each(|(sample, pressed)| *sample = sample.min(pressed));
         }
+        keys.iter().map(|key| self.reach_of(*key)).collect()
     }
 
-    /// The box, in the node's space, in which any of these bricks can be felt.
-    fn reach_of(&self, keys: &[[i32; 3]]) -> Aabb {
-        let corner = |key: &[i32; 3], by: i32, beyond: f32| {
+    /// The box, in the node's space, in which this brick can be felt.
+    fn reach_of(&self, key: [i32; 3]) -> Aabb {
+        let corner = |by: i32, beyond: f32| {
             let index = key.map(|key| (key + by) * VOXEL_BRICK as i32);
             Brick::lattice_point(index, self.spacing) + beyond * self.spacing
         };
-        let ends = keys.iter().flat_map(|key| [corner(key, 0, -1.0), corner(key, 1, 0.0)]);
-        let upright = Aabb::of_points(ends);
+        let upright = Aabb { min: corner(0, -1.0), max: corner(1, 0.0) };
         let node_from_upright = self.upright_from_node.inverse();
         Aabb::of_points(
             upright.corners().map(|corner| node_from_upright.transform_point3(corner.as_dvec3()).as_vec3()),
@@ -124,7 +114,7 @@ impl Dents {
     }
 
     /// By how much the field is to be lowered at places of the lattice.
-    fn depths(&self, node: &dyn Field, pieces: &[Piece]) -> BTreeMap<[i32; 3], f32> {
+    fn depths(&self, node: &dyn Field, pieces: &[Piece]) -> Depths {
         let sampled = |sampler: &mut Box<dyn Sampler + '_>, piece: &Piece| {
             let places: Vec<Vec3> = piece.places.iter().map(|place| place.as_vec3()).collect();
             let mut samples = vec![Sample::default(); places.len()];
@@ -134,7 +124,7 @@ impl Dents {
             samples
         };
         let samples: Vec<Vec<Sample>> = pieces.par_iter().map_init(|| node.sampler(), sampled).collect();
-        let mut depths = BTreeMap::new();
+        let mut depths = Depths::new();
         for (piece, samples) in pieces.iter().zip(&samples) {
             let margin = if piece.island { ISLAND_MARGIN_MM } else { MARGIN_MM };
             for (place, sample) in piece.places.iter().zip(samples) {
@@ -146,7 +136,7 @@ impl Dents {
     }
 
     /// One dent.
-    fn dent(&self, place: DVec3, depth: f32, depths: &mut BTreeMap<[i32; 3], f32>) {
+    fn dent(&self, place: DVec3, depth: f32, depths: &mut Depths) {
         let middle = (self.upright_from_node.transform_point3(place) / f64::from(self.spacing)).as_vec3();
         let span = |x: f32, down: f32| (x - down).ceil() as i32..=(x + RIM).floor() as i32;
         let slope = |x: f32| ((RIM - x) / (RIM - BOTTOM)).clamp(0.0, 1.0);
@@ -157,89 +147,47 @@ impl Dents {
                 for x in span(middle.x, RIM) {
                     let depth = depth * share * slope((x as f32 - middle.x).hypot(y as f32 - middle.y));
                     if depth > 0.0 {
-                        let deepest = depths.entry([x, y, z]).or_insert(0.0);
-                        *deepest = depth.max(*deepest);
+                        deepen(depths, [z, y, x], depth);
                     }
                 }
             }
         }
     }
-
-    /// The samples of a brick with these dents only, sharpened as the limit's are.
-    fn pressed(
-        &self,
-        sampler: &mut dyn Sampler,
-        key: [i32; 3],
-        depths: &BTreeMap<[i32; 3], f32>,
-    ) -> Vec<f32> {
-        let first = key.map(|key| key * VOXEL_BRICK as i32 - 2);
-        let depths: Vec<Option<f32>> = (0..WIDE * WIDE * WIDE)
-            .map(|i| {
-                let at = at(i, WIDE);
-                let index: [i32; 3] = std::array::from_fn(|a| first[a] + at[a] as i32);
-                depths.get(&index).copied()
-            })
-            .collect();
-        let own: Vec<usize> = (0..VOXEL_SAMPLES).map(wide).filter(|i| depths[*i].is_some()).collect();
-        let mut needed: Vec<usize> =
-            own.iter().flat_map(|i| BESIDE.iter().flat_map(move |step| [i - step, i + step])).collect();
-        needed.extend(&own);
-        needed.sort_unstable();
-        needed.dedup();
-        let node_from_upright = self.upright_from_node.inverse();
-        let place = |i: &usize| {
-            let at = at(*i, WIDE);
-            let index = std::array::from_fn(|a| first[a] + at[a] as i32);
-            let upright = Brick::lattice_point(index, self.spacing).as_dvec3();
-            node_from_upright.transform_point3(upright).as_vec3()
-        };
-        let places: Vec<Vec3> = needed.iter().map(place).collect();
-        let mut found = vec![0.0; places.len()];
-        sampler.enter(Aabb::of_points(places.iter().copied()));
-        sampler.values(&places, &mut found);
-        sampler.leave();
-        let mut values = vec![0.0; WIDE * WIDE * WIDE];
-        for (i, value) in needed.into_iter().zip(found) {
-            values[i] = value - depths[i].unwrap_or(0.0);
-        }
-        let sample = |i: usize| {
-            let own = wide(i);
-            let beside = BESIDE.map(|step| values[own - step] + values[own + step]);
-            let sharp = values[own] - 0.125 * (beside.iter().sum::<f32>() - 6.0 * values[own]);
-            if depths[own].is_some() { sharp.clamp(0.0, TOP) } else { TOP }
-        };
-        (0..VOXEL_SAMPLES).map(sample).collect()
-    }
 }
 
-/// Steps to the next sample along each axis, of those that are looked at.
-const BESIDE: [usize; 3] = [1, WIDE, WIDE * WIDE];
-
-fn at(i: usize, side: usize) -> [usize; 3] {
-    [i % side, i / side % side, i / side / side]
-}
-
-/// The number, of those that are looked at, of a sample of the brick.
-fn wide(i: usize) -> usize {
-    let [x, y, z] = at(i, SIDE);
-    x + 1 + WIDE * (y + 1 + WIDE * (z + 1))
-}
-
-/// Bricks that touch each other, together.
-fn clusters(mut keys: BTreeSet<[i32; 3]>) -> Vec<Vec<[i32; 3]>> {
-    let mut clusters = Vec::new();
-    while let Some(first) = keys.pop_first() {
-        let mut cluster = vec![first];
-        let mut next = 0;
-        while let Some(&[x, y, z]) = cluster.get(next) {
-            next += 1;
-            for dz in -1..=1 {
-                for dy in -1..=1 {
-                    cluster.extend((-1..=1).filter_map(|dx| keys.take(&[x + dx, y + dy, z + dz])));
-                }
+/// The samples of a brick with these dents only, sharpened as the limit's are; of a field with these values, by layer, row
+/// and column.
+fn pressed(key: [i32; 3], depths: &Depths, value: impl Fn([i32; 3]) -> f32) -> Vec<f32> {
+    let mut samples = vec![TOP; VOXEL_SAMPLES];
+    let first = key.map(|key| key * VOXEL_BRICK as i32 - 1);
+    let lowered = |at: [i32; 3]| value(at) - depths.get(&at).copied().unwrap_or(0.0);
+    for z in 0..SIDE {
+        for y in 0..SIDE {
+            let row = [first[2] + z as i32, first[1] + y as i32];
+            let ends = [first[0], first[0] + SIDE as i32].map(|x| [row[0], row[1], x]);
+            for (at, _) in depths.range(ends[0]..ends[1]) {
+                let own = lowered(*at);
+                let around: f32 = beside(*at).map(&lowered).sum();
+                let x = (at[2] - first[0]) as usize;
+                samples[x + SIDE * (y + SIDE * z)] = (own - 0.125 * (around - 6.0 * own)).clamp(0.0, TOP);
             }
         }
-        clusters.push(cluster);
     }
-    clusters
+    samples
+}
+
+/// The six places beside one.
+fn beside(at: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
+    (0..3).flat_map(move |a| {
+        [-1, 1].map(|by| {
+            let mut beside = at;
+            beside[a] += by;
+            beside
+        })
+    })
+}
+
+/// A place and the six beside it.
+fn with_beside(at: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
+    beside(at).chain([at])
 }

@@ -47,9 +47,9 @@ pub(super) fn dilate_row(layer: &Layer, row: usize, radius: f32, out: &mut [f32]
     }
 }
 
-/// The greatest value on the circle, of 3 × 3 places.
+/// The greatest value on the circle around the middle one, and in it, of 3 × 3 places.
 #[inline(always)]
-fn greatest([south, here, north]: [[f32; 3]; 3], radius: f32) -> f32 {
+pub(super) fn greatest([south, here, north]: [[f32; 3]; 3], radius: f32) -> f32 {
     let middle = here[1];
     let larger = |a: f32, b: f32| if a > b { a } else { b };
     let [c22, s22, c45] = [radius * C22, radius * S22, radius * C45];

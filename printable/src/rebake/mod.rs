@@ -17,6 +17,7 @@
 mod anchor;
 mod bricks;
 mod brush;
+mod cone;
 mod dents;
 mod disc;
 mod grow;

@@ -3,7 +3,7 @@
 use super::Rebaker;
 use super::dents::Dents;
 use super::look::Look;
-use blobtree::{Aabb, Bake, BakeError, SupportFree, Tree};
+use blobtree::{Bake, BakeError, SupportFree, Tree};
 use polygonizer::CellSize;
 use std::sync::Arc;
 
@@ -33,18 +33,13 @@ pub(super) fn settle(
             break;
         }
         bake.removed_mm3 += area * f64::from(rule.layer_height);
-        let pressed = dents.press(&tree, &pieces);
-        let boxes: Vec<Aabb> = pressed.iter().map(|pressed| pressed.dirty).collect();
-        let groups = look.groups(&boxes);
-        for group in groups {
-            group.iter().flat_map(|spot| &spot.changes).for_each(|change| dents.add(&pressed[*change]));
-            // Dents too far apart for one image are left out.
-            let Ok(image) = dents.image() else { return Ok(bake) };
-            bake.dents = Some(Arc::new(image));
-            tree = node(&bake);
-            if !look.follow(rebaker, &tree, &group)? {
-                return Ok(bake);
-            }
+        let dirty = dents.press(&tree, &pieces);
+        // Dents too far apart for one image are left out.
+        let Ok(image) = dents.image() else { return Ok(bake) };
+        bake.dents = Some(Arc::new(image));
+        tree = node(&bake);
+        if !look.follow(rebaker, &tree, &dirty)? {
+            return Ok(bake);
         }
         if !look.slice(rebaker)? {
             break;
