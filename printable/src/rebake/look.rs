@@ -124,3 +124,84 @@ fn sliced<T>(result: Result<T, SliceError>) -> Result<Option<T>, BakeError> {
         Err(_) => Ok(None),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::dents::Dents;
+    use super::*;
+    use blobtree::build::{Build, cuboid, point, segment};
+    use blobtree::{Bake, BakeStore, Baker, Field, Node, NodeRef, SupportMode};
+    use std::sync::Arc;
+
+    /// Dents a node some times, and compares each look with a fresh one: meshes to the last bit.
+    #[derive(Debug)]
+    struct Comparing;
+
+    const ROUNDS: usize = 4;
+
+    impl Baker for Comparing {
+        fn bake(&self, rule: &SupportFree, child: &dyn Field) -> Result<Bake, BakeError> {
+            Rebaker::new().bake(rule, child)
+        }
+
+        fn finish(
+            &self,
+            rule: &SupportFree,
+            node: &dyn Fn(&Bake) -> Tree,
+            mut bake: Bake,
+        ) -> Result<Bake, BakeError> {
+            let rebaker = Rebaker::new();
+            let cell = CellSize::from_mm(rule.layer_height).expect("legal");
+            let mut dents = Dents::new(rule);
+            let mut tree = node(&bake);
+            let fresh =
+                |tree: &Tree| Look::new(&rebaker, cell, rule, tree).expect("no cancel").expect("solid");
+            let mut kept = fresh(&tree);
+            for round in 0..ROUNDS {
+                let pieces = kept.pieces(dents.pitch());
+                assert!(round > 0 || rule.mode == SupportMode::Grow || !pieces.is_empty(), "nothing hangs");
+                if pieces.is_empty() {
+                    break;
+                }
+                let dirty = dents.press(&tree, &pieces);
+                bake.dents = Some(Arc::new(dents.image().expect("close together")));
+                tree = node(&bake);
+                assert!(kept.follow(&rebaker, &tree, &dirty).expect("no cancel"), "round {round}");
+                assert!(kept.slice(&rebaker).expect("no cancel"), "round {round}");
+                let fresh = fresh(&tree);
+                assert!(kept.surface == fresh.surface, "round {round}: the mesh differs");
+                assert_eq!(kept.surface.mesh(), fresh.surface.mesh(), "round {round}");
+                // Outlines may begin elsewhere, and lie on another grid.
+                assert_eq!(kept.slices.layers.len(), fresh.slices.layers.len(), "round {round}");
+                for layer in 0..fresh.slices.layers.len() {
+                    let apart = kept.slices.area(layer) - fresh.slices.area(layer);
+                    assert!(apart.abs() < 1e-4, "round {round}, layer {layer}: {apart} mm² apart");
+                }
+                let hanging =
+                    |look: &Look| -> f64 { look.pieces(dents.pitch()).iter().map(|piece| piece.area).sum() };
+                let apart = hanging(&kept) - hanging(&fresh);
+                assert!(apart.abs() < 1e-4, "round {round}: {apart} mm² more hang");
+            }
+            Ok(bake)
+        }
+    }
+
+    fn shapes() -> [Node; 2] {
+        let block = || cuboid([0., 0., 6.], [14., 10., 12.]);
+        [
+            block().blend_subtract(point([-3., 0., -1.], 3.).union(point([3., 0., -1.], 3.))),
+            block().union(segment([0., 0., 9.], [14., 1., 8.], 0.6)),
+        ]
+    }
+
+    #[test]
+    fn what_was_kept_through_settling_equals_a_fresh_look() {
+        for mode in [SupportMode::Trim, SupportMode::Grow] {
+            for shape in shapes() {
+                let rule = SupportFree { mode, ..SupportFree::default() };
+                let root: NodeRef = shape.support_free(rule).into();
+                BakeStore::new().bake(&root, &Comparing).expect("it can be baked");
+            }
+        }
+    }
+}

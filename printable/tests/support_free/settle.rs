@@ -53,3 +53,27 @@ fn settled_shapes_are_support_free_in_the_eyes_of_the_print_check() {
         }
     }
 }
+
+/// The bytes of a settled shape's mesh, made by so many threads.
+fn bytes(shape: &Node, rule: SupportFree, threads: usize) -> Vec<u8> {
+    let cell = CellSize::from_mm(rule.layer_height).expect("legal");
+    let make = || {
+        let root: NodeRef = shape.clone().support_free(rule.clone()).into();
+        let tree = BakeStore::new().tree(&root, &Rebaker::new().settling(cell)).expect("it can be baked");
+        let mesh = Surface::build(&tree, cell, &Options::default()).expect("small").mesh();
+        let corners = mesh.positions.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes);
+        corners.chain(mesh.triangles.into_iter().flatten().flat_map(u32::to_le_bytes)).collect()
+    };
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(make)
+}
+
+#[test]
+fn one_thread_and_many_settle_to_the_same_bytes() {
+    for (name, shape) in shapes() {
+        let rule = trimming(45.0, 0.25);
+        let one = bytes(&shape, rule.clone(), 1);
+        for threads in [2, 5] {
+            assert!(bytes(&shape, rule.clone(), threads) == one, "{name}: {threads} threads differ");
+        }
+    }
+}
