@@ -1,7 +1,7 @@
 //! Lines joined by their ends into chains, and the groups of chains that touch.
 
 use super::line::{Line, Sample, extent, length};
-use super::polygon::{area, bounds, crossing};
+use super::polygon::{area, bounds, crossing, crossings};
 use glam::DVec2;
 
 /// Ends nearer than this belong together, in drawing sizes: what people leave open between strokes.
@@ -48,7 +48,8 @@ impl Chain {
     /// Whether there is room inside, were it closed.
     pub fn has_room(&self) -> bool {
         let places: Vec<DVec2> = self.samples.iter().map(|sample| sample.at).collect();
-        area(&places).abs() > LEAST_AREA * length(&self.samples) * self.extent()
+        let least = LEAST_AREA * length(&self.samples) * self.extent();
+        area(&places).abs() > least || has_lobes(&places, least)
     }
 
     /// Closes the chain across its gap.
@@ -59,6 +60,17 @@ impl Chain {
         self.samples.extend(gap_samples(last, first));
         self.closed = true;
     }
+}
+
+/// Whether a closed line crosses itself so that it goes around one side and around the other the other way, such as an
+/// eight: together they may enclose nothing.
+fn has_lobes(places: &[DVec2], least: f64) -> bool {
+    let all = area(places);
+    crossings(places).any(|(i, j, _)| {
+        let one = area(&places[i.min(j) + 1..=i.max(j)]);
+        let other = all - one;
+        one * other < 0. && one.abs().min(other.abs()) > least
+    })
 }
 
 /// Samples that lead across a gap without holding the curve to the straight line.

@@ -75,23 +75,30 @@ impl Edge {
 ///
 /// **Cost:** edges sorted by x; about linear for evenly spaced points.
 pub(super) fn cross<'a>(polygons: impl Iterator<Item = &'a [DVec2]>) -> bool {
-    crossings(polygons).next().is_some()
+    crossings_of(polygons).next().is_some()
+}
+
+/// Every two edges of a polygon that cross, and where. **Cost:** as [`cross`].
+pub(super) fn crossings(points: &[DVec2]) -> impl Iterator<Item = (usize, usize, DVec2)> {
+    crossings_of(std::iter::once(points))
 }
 
 /// Two edges i < j of a polygon that cross, the ones nearest to each other along it, and where.
 pub(super) fn first_crossing(points: &[DVec2]) -> Option<(usize, usize, DVec2)> {
-    let nearest = crossings(std::iter::once(points)).min_by_key(|&(a, b, _)| (a.abs_diff(b), a.min(b)));
+    let nearest = crossings(points).min_by_key(|&(a, b, _)| (a.abs_diff(b), a.min(b)));
     nearest.map(|(a, b, at)| (a.min(b), a.max(b), at))
 }
 
 /// As [`first_crossing`], of a polygon that crosses itself once.
 pub(super) fn only_crossing(points: &[DVec2]) -> Option<(usize, usize, DVec2)> {
-    let mut all = crossings(std::iter::once(points));
+    let mut all = crossings(points);
     let (a, b, at) = all.next()?;
     all.next().is_none().then_some((a.min(b), a.max(b), at))
 }
 
-fn crossings<'a>(polygons: impl Iterator<Item = &'a [DVec2]>) -> impl Iterator<Item = (usize, usize, DVec2)> {
+fn crossings_of<'a>(
+    polygons: impl Iterator<Item = &'a [DVec2]>,
+) -> impl Iterator<Item = (usize, usize, DVec2)> {
     let mut all: Vec<Edge> = polygons
         .enumerate()
         .flat_map(|(polygon, points)| {
