@@ -1,6 +1,6 @@
 //! The lines that hold an outline which was found on a raster.
 
-use super::chains::Chain;
+use super::chains::{AS_NEAR, Chain};
 use super::line::Sample;
 use super::polygon;
 use super::silhouette::Silhouette;
@@ -12,9 +12,6 @@ const WEIGHT_ON_THE_WAY: f64 = 0.02;
 const WEIGHT_OF_A_GAP: f64 = 1e-2;
 /// Bridges are held at places so far apart, in reaches of the outline.
 const STEP_ON_BRIDGES: f64 = 0.15;
-/// Lines are as near to a place as each other, or meet, up to this, in drawing sizes: more than rounding, less than
-/// can be seen.
-const AS_NEAR: f64 = 1e-5;
 /// Samples nearer to each other than this, in drawing sizes, are one.
 const REPETITION: f64 = 1e-4;
 

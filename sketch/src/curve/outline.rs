@@ -5,7 +5,7 @@ use super::closing;
 use super::corners::Wishes;
 use super::fair::{fair, turned};
 use super::groups::groups;
-use super::line::Line;
+use super::line::{Line, coarse};
 use super::lobes::lobes;
 use super::polygon;
 use super::silhouette::{PENS, WIDE_PENS, silhouettes};
@@ -60,9 +60,8 @@ impl Outline {
 /// Reads lines as outlines and holes.
 pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -> Result<Outline, NoOutline> {
     lines.sort_by(|a, b| {
-        super::line::extent(&b.samples)
-            .total_cmp(&super::line::extent(&a.samples))
-            .then(a.stroke.cmp(&b.stroke))
+        let [a_extent, b_extent] = [a, b].map(|line| coarse(super::line::extent(&line.samples)));
+        b_extent.total_cmp(&a_extent).then(a.stroke.cmp(&b.stroke))
     });
     lines.truncate(MOST_LINES);
     let mut chains = chains::chains(lines);
@@ -73,7 +72,7 @@ pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -
         .map(|members| Group::of(&members, &chains, &bridges))
         .filter(|group| group.extent > LEAST_EXTENT)
         .collect();
-    groups.sort_by(|a, b| b.extent.total_cmp(&a.extent));
+    groups.sort_by(|a, b| coarse(b.extent).total_cmp(&coarse(a.extent)));
     groups.truncate(MOST_GROUPS);
     let mut found: Vec<Outline> = groups.iter().map(|group| group.outline(wishes)).collect();
     close_the_open(&groups, &mut found, wishes);

@@ -45,13 +45,22 @@ pub(super) fn near(both: [&[DVec2]; 2]) -> bool {
 
 /// Where two segments cross: the shares of their lengths.
 pub(super) fn crossing(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> Option<(f64, f64)> {
+    touching(a, b, 0.)
+}
+
+/// As [`crossing`], also where segments end up to `reach` short of each other.
+pub(super) fn touching(a: (DVec2, DVec2), b: (DVec2, DVec2), reach: f64) -> Option<(f64, f64)> {
     let (along_a, along_b, between) = (a.1 - a.0, b.1 - b.0, b.0 - a.0);
     let turn = along_a.perp_dot(along_b);
     if turn == 0. {
         return None;
     }
     let (s, t) = (between.perp_dot(along_b) / turn, between.perp_dot(along_a) / turn);
-    ((0. ..=1.).contains(&s) && (0. ..=1.).contains(&t)).then_some((s, t))
+    let on = |share: f64, along: DVec2| {
+        let beyond = if reach > 0. { reach / along.length() } else { 0. };
+        (-beyond..=1. + beyond).contains(&share).then_some(share.clamp(0., 1.))
+    };
+    on(s, along_a).zip(on(t, along_b))
 }
 
 /// An edge of one of several polygons.
