@@ -25,7 +25,7 @@ pub struct SupportFreeArgs {
     /// Scale a mesh to this height, mm.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub height: Option<f64>,
-    /// Lift or lower a mesh so that its lowest point lies on the bed.
+    /// Lift or lower the shape so that its lowest point lies on the bed.
     #[arg(long)]
     pub drop: bool,
     #[command(flatten)]

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::input::{self, Input, Prefer};
 use crate::job::Job;
 use crate::meshing;
-use crate::output::{Report, check_writable, number};
+use crate::output::{Report, check_writable, number, short};
 use crate::verbs::mesh::tell;
 use blobtree::build::{Build, primitive};
 use blobtree::{Bake, BakeStore, Node, NodeRef, Primitive, Scene, SupportFree, Tree};
@@ -39,9 +39,9 @@ pub fn run(args: &SupportFreeArgs, job: &mut Job) -> Result<Report, Failure> {
     };
     rule.check().map_err(|e| Failure::Input(e.to_string()))?;
     let scene = match input::open(&args.input, None, Prefer::Scene, job, &mut report)? {
-        Input::Scene(scene) => constrained_scene(args, rule, scene)?,
+        Input::Scene(scene) => constrained_scene(args, rule, scene, job, &mut report)?,
         Input::Mesh(loaded) => {
-            let node = mesh_node(args, &loaded.mesh, to_scene, job)?;
+            let node = mesh_node(args, &loaded.mesh, to_scene, job, &mut report)?;
             Scene { title: loaded.attachments.title, ..Scene::new(node.support_free(rule)) }
         }
     };
@@ -80,16 +80,59 @@ fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("trullo"))
 }
 
-fn constrained_scene(args: &SupportFreeArgs, rule: SupportFree, scene: Scene) -> Result<Scene, Failure> {
-    if args.height.is_some() || args.drop {
-        let what = "a scene, which has its own size and place; --height and --drop are for meshes";
+/// The scene below the rule, on the bed if that was asked for.
+///
+/// Errors: a height; to be dropped, a scene without any solid.
+fn constrained_scene(
+    args: &SupportFreeArgs,
+    rule: SupportFree,
+    scene: Scene,
+    job: &mut Job,
+    report: &mut Report,
+) -> Result<Scene, Failure> {
+    if args.height.is_some() {
+        let what = "a scene, which has its own size; --height is for meshes";
         return Err(Failure::of(&args.input, what));
     }
-    Ok(Scene { root: scene.root.clone().support_free(rule).into(), ..scene })
+    let lowest = if args.drop { lowest_point(args, &scene.root, job)? } else { 0.0 };
+    if args.drop {
+        tell_drop(lowest, report);
+    }
+    let root = match lowest {
+        0.0 => scene.root.clone().support_free(rule),
+        _ => scene.root.clone().translate(Vec3::new(0.0, 0.0, -lowest)).support_free(rule),
+    };
+    Ok(Scene { root: root.into(), ..scene })
+}
+
+/// How high the lowest point of the scene's solid is, mm, in tenths of a micrometre: that of its mesh in the cells that
+/// were asked for, with the support-free nodes that it holds kept. 0 if it is nearer to the bed than a micrometre, which
+/// is less than meshes are exact to.
+fn lowest_point(args: &SupportFreeArgs, root: &NodeRef, job: &mut Job) -> Result<f32, Failure> {
+    let tree = constraint::compile(&args.input, root, ConstraintArgs { no_constraint: false }, job)?;
+    let cell = meshing::cell_of(&args.input, root, &tree, &args.resolution, job)?;
+    let lowest = meshing::mesh_tree(&args.input, &tree, cell, job)?.mesh.bounds().min.z;
+    Ok(if lowest.abs() < 1e-3 { 0.0 } else { (1e4 * lowest).round() / 1e4 })
+}
+
+/// How far the shape was moved to the bed.
+fn tell_drop(lowest: f32, report: &mut Report) {
+    report.put("dropped_mm", number(lowest));
+    report.line(match lowest {
+        0.0 => "drop: its lowest point is on the bed already".to_owned(),
+        above if above > 0.0 => format!("drop: lowered by {} mm to the bed", short(above)),
+        below => format!("drop: raised by {} mm to the bed", short(-below)),
+    });
 }
 
 /// The mesh as a node, at the height and place that were asked for.
-fn mesh_node(args: &SupportFreeArgs, mesh: &Mesh, to_scene: bool, job: &mut Job) -> Result<Node, Failure> {
+fn mesh_node(
+    args: &SupportFreeArgs,
+    mesh: &Mesh,
+    to_scene: bool,
+    job: &mut Job,
+    report: &mut Report,
+) -> Result<Node, Failure> {
     let folder = to_scene.then(|| args.output.parent().unwrap_or(Path::new("")));
     let imported = job.stage("import", |_| {
         input::imported_mesh(&args.input, mesh, folder, FALLOFF_LAYERS * args.layer_height)
@@ -111,6 +154,9 @@ fn mesh_node(args: &SupportFreeArgs, mesh: &Mesh, to_scene: bool, job: &mut Job)
         node = node.scale([scale; 3]);
     }
     let lowest = bounds.min.z * scale;
+    if args.drop {
+        tell_drop(lowest, report);
+    }
     Ok(if args.drop && lowest != 0.0 { node.translate(Vec3::new(0.0, 0.0, -lowest)) } else { node })
 }
 
@@ -131,13 +177,15 @@ fn tell_bake(args: &SupportFreeArgs, bakes: &BakeStore, root: &NodeRef, report: 
         bake.added_mm3
     ));
     if bake.cut_at_bed {
-        report.notices.push("the shape reaches below the bed z = 0 and was cut there".into());
+        let remedy = if args.drop { "" } else { "; --drop puts its lowest point on the bed" };
+        report.notices.push(format!("the shape reaches below the bed z = 0 and was cut there{remedy}"));
     }
 }
 
 /// The reason if all of a shape was taken away.
 fn nothing_left(args: &SupportFreeArgs, bakes: &BakeStore, root: &NodeRef) -> Option<Failure> {
     let bake = bakes.of(root)?;
-    let what = "nothing is left: no part of the shape stands on the bed z = 0; move it there, with --drop for a mesh";
+    let what =
+        "nothing is left: no part of the shape stands on the bed z = 0; --drop puts its lowest point there";
     (bake.removed_mm3 > 0.0 || bake.cut_at_bed).then(|| Failure::of(&args.input, what))
 }

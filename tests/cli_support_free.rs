@@ -1,0 +1,68 @@
+//! `trullo support-free` as a user runs it.
+
+mod common;
+
+use common::{Folder, assert_failed, json_of};
+use serde_json::Value;
+
+/// A box of 10 × 8 × 6 mm whose underside is at this height, mm.
+fn a_box(bottom: f32) -> String {
+    let middle = bottom + 3.0;
+    format!(
+        r#"{{"format": "trullo", "version": 1, "root":
+            {{"type": "box", "center": [0, 0, {middle}], "size": [10, 8, 6]}}}}"#
+    )
+}
+
+fn number(json: &Value, key: &str) -> f64 {
+    json[key].as_f64().unwrap_or_else(|| panic!("no number {key} in {json:#}"))
+}
+
+#[test]
+fn drop_puts_the_lowest_point_of_a_scene_on_the_bed() {
+    for bottom in [7.5, 0.0, -2.25] {
+        let folder = Folder::with_scene("box.trullo", &a_box(bottom));
+        let out = folder.trullo(&[
+            "support-free",
+            "box.trullo",
+            "-o",
+            "b.stl",
+            "--drop",
+            "--json",
+            "--cell",
+            "0.5",
+        ]);
+        assert_eq!(out.status.code(), Some(0), "{bottom}: {out:?}");
+        let json = json_of(&out);
+        assert!((number(&json, "dropped_mm") - f64::from(bottom)).abs() < 1e-3, "{json:#}");
+        assert_eq!(json["cut_at_bed"], false);
+        let volume = number(&json, "volume_mm3");
+        assert!((volume - 480.0).abs() < 1.0, "{bottom}: {volume} mm³ are left of 480");
+        // In a scene, the shape is moved below the rule, and can still be changed.
+        let out = folder.trullo(&["support-free", "box.trullo", "-o", "b.trullo", "--drop"]);
+        assert_eq!(out.status.code(), Some(0), "{bottom}: {out:?}");
+        let scene: Value = serde_json::from_slice(&folder.read("b.trullo")).expect("a scene is JSON");
+        assert_eq!(scene["root"]["type"], "support_free");
+        let below = &scene["root"]["child"];
+        let moved = below["translate"][2].as_f64().unwrap_or(0.0);
+        assert!((moved + f64::from(bottom)).abs() < 1e-3, "{scene:#}");
+        assert_eq!(below["type"], if bottom == 0.0 { "box" } else { "transform" });
+        // Once on the bed, there is nothing to drop.
+        let out = folder.trullo(&["support-free", "b.trullo", "-o", "c.trullo", "--drop", "--json"]);
+        assert_eq!(number(&json_of(&out), "dropped_mm"), 0.0);
+    }
+}
+
+#[test]
+fn who_floats_above_the_bed_or_lies_below_it_is_told_of_drop() {
+    for bottom in [7.5, -20.0] {
+        let folder = Folder::with_scene("box.trullo", &a_box(bottom));
+        let out = folder.trullo(&["support-free", "box.trullo", "-o", "b.stl", "--cell", "0.5"]);
+        assert_failed(&out, "--drop puts its lowest point there");
+        assert!(!folder.has("b.stl"));
+    }
+    let folder = Folder::with_scene("box.trullo", &a_box(-2.0));
+    let out = folder.trullo(&["support-free", "box.trullo", "-o", "b.stl", "--cell", "0.5"]);
+    let notes = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(notes.contains("cut there; --drop puts its lowest point on the bed"), "{notes}");
+}
