@@ -18,6 +18,7 @@ mod rule;
 pub mod slices;
 mod support;
 mod voxels;
+mod why;
 
 pub use brush::{
     Action, Brush, Dab, DabError, MAX_DABS, PressureRange, StrokeSample, StrokeShape, Tip, dabs_of, stroke,
@@ -29,3 +30,4 @@ pub use support::{
     grow, preserve, smooth, trim, trim_with_changes, unsupported,
 };
 pub use voxels::{GridShape, MAX_VOXELS, VoxelError, VoxelGrid, VoxelSize};
+pub use why::{Cause, Change};

@@ -35,6 +35,15 @@ impl VoxelGrid {
         grid.on_the_bed()
     }
 
+    /// The same of what is above the bed, wherever the field's solid lies.
+    ///
+    /// Errors: more than [`MAX_VOXELS`](super::MAX_VOXELS) along a side; nothing solid above the bed.
+    pub(crate) fn above_bed(field: &dyn Field, size: VoxelSize) -> Result<Self, VoxelError> {
+        let mut grid = Self::new(GridShape::covering(solid_bounds(field), size)?);
+        for_width!(grid.solid.words, W => fill::<W>(field, &mut grid));
+        Ok(grid)
+    }
+
     /// The grid itself, if it stands on the bed.
     pub(super) fn on_the_bed(self) -> Result<Self, VoxelError> {
         let lowest = self.solid_voxels().next();
@@ -47,7 +56,7 @@ impl VoxelGrid {
 }
 
 /// A box around the solid, tighter than the field's support.
-fn solid_bounds(field: &dyn Field) -> Aabb {
+pub(crate) fn solid_bounds(field: &dyn Field) -> Aabb {
     let mut sampler = field.sampler();
     let mut bounds = field.support();
     for _ in 0..ROUNDS {

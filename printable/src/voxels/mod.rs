@@ -17,6 +17,7 @@ mod materials;
 mod shape;
 
 pub(crate) use bits::{Bits, Block, Row, Rows, for_width, join, moved_row, ones, run_of_bits};
+pub(crate) use from_field::solid_bounds;
 pub use grid::VoxelGrid;
 pub(crate) use materials::WORD_VOXELS;
 pub use shape::{GridShape, MAX_VOXELS, VoxelError, VoxelSize};

@@ -7,3 +7,4 @@ mod grow;
 mod settle;
 mod store;
 mod trim;
+mod why;
