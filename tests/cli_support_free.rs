@@ -66,3 +66,58 @@ fn who_floats_above_the_bed_or_lies_below_it_is_told_of_drop() {
     let notes = String::from_utf8_lossy(&out.stderr).into_owned();
     assert!(notes.contains("cut there; --drop puts its lowest point on the bed"), "{notes}");
 }
+
+#[test]
+fn why_tells_what_was_changed_at_a_place_in_words_and_in_json() {
+    // A post of 4 mm with a bar of 24 mm on top, in a node that is switched off.
+    let scene = r#"{"format": "trullo", "version": 1, "root": {"type": "support_free", "mode": "off", "child":
+        {"type": "union", "children": [
+            {"type": "box", "center": [0, 0, 8], "size": [4, 4, 16]},
+            {"type": "box", "center": [0, 0, 18], "size": [24, 4, 4]}]}}}"#;
+    let folder = Folder::with_scene("t.trullo", scene);
+    let arguments = ["support-free", "t.trullo", "-o", "out.trullo", "--why", "10,0,18", "--why", "0,0,-3"];
+    let out = folder.trullo(&arguments);
+    assert_eq!(out.status.code(), Some(0), "{out:?}");
+    let text = String::from_utf8_lossy(&out.stdout).into_owned();
+    let taken = "10,0,18: taken away: overhang: the surface below it, at 10,0,16, leans out by ";
+    assert!(text.contains(taken) && text.contains("° from the vertical, more than 45°"), "{text}");
+    assert!(text.contains("0,0,-3: nothing was changed here; empty, as drawn"), "{text}");
+    let json = json_of(&folder.trullo(&[&arguments[..], &["--json"]].concat()));
+    let answer = &json["why"][0];
+    assert_eq!([&answer["drawn"], &answer["solid"]], [true, false], "{answer:#}");
+    let change = &answer["changes"][0];
+    assert_eq!([&change["node"], &change["change"], &change["cause"]], ["/", "taken", "overhang"]);
+    assert!(number(change, "lean_degrees") > 85.0, "{change:#}");
+    assert_eq!(json["why"][1]["changes"], Value::Array(Vec::new()));
+    // What grows says for which place, also in a mesh.
+    let json = json_of(&folder.trullo(&[
+        "support-free",
+        "t.trullo",
+        "-o",
+        "t.stl",
+        "--operator",
+        "grow",
+        "--why",
+        "6,0,15",
+        "--json",
+    ]));
+    let change = &json["why"][0]["changes"][0];
+    assert_eq!([&change["change"], &change["cause"]], ["added", "grown"], "{json:#}");
+    let held = change["holds"][2].as_f64().expect("a place");
+    assert!((16.0..16.3).contains(&held), "{change:#}");
+}
+
+#[test]
+fn why_names_the_stroke_of_a_node_within_the_scene() {
+    let scene = r#"{"format": "trullo", "version": 1, "root": {"type": "support_free",
+        "child": {"type": "box", "center": [0, 0, 5], "size": [20, 20, 10]}, "strokes": [
+            {"brush": "add_trim", "radius": 2, "places": [[-6, 0, 10]]},
+            {"brush": "remove_trim", "radius": 2, "places": [[6, 0, 10]]}]}}"#;
+    let folder = Folder::with_scene("s.trullo", scene);
+    let out = folder.trullo(&["support-free", "s.trullo", "-o", "out.trullo", "--why", "6,0,9.5", "--json"]);
+    assert_eq!(out.status.code(), Some(0), "{out:?}");
+    let change = &json_of(&out)["why"][0]["changes"][0].clone();
+    assert_eq!(change["told"], "stroke 2 (remove_trim) took it away", "{change:#}");
+    assert_eq!([&change["node"], &change["brush"]], ["/0", "remove_trim"]);
+    assert_eq!(change["stroke"], 2);
+}

@@ -1,8 +1,9 @@
 //! `trullo support-free`.
 
-use super::values::length;
+use super::values::{length, point};
 use super::{Common, ResolutionArgs};
 use clap::{Args, ValueEnum};
+use glam::Vec3;
 use std::path::PathBuf;
 
 /// `trullo support-free`.
@@ -28,6 +29,9 @@ pub struct SupportFreeArgs {
     /// Lift or lower the shape so that its lowest point lies on the bed.
     #[arg(long)]
     pub drop: bool,
+    /// Also say why matter was taken away or added at this place of the result, mm; can be given several times.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point)]
+    pub why: Vec<Vec3>,
     #[command(flatten)]
     pub resolution: ResolutionArgs,
     #[command(flatten)]

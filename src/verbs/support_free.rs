@@ -1,5 +1,7 @@
 //! `trullo support-free`: a scene or mesh becomes one that prints without supports.
 
+mod why;
+
 use crate::cli::{ConstraintArgs, SupportFreeArgs};
 use crate::constraint;
 use crate::failure::Failure;
@@ -55,6 +57,7 @@ pub fn run(args: &SupportFreeArgs, job: &mut Job) -> Result<Report, Failure> {
     };
     let bakes = constraint::bakes(&args.input, &scene.root, kept, cell, job)?;
     tell_bake(args, &bakes, &scene.root, &mut report);
+    why::tell(&args.input, &scene.root, &bakes, &args.why, job, &mut report)?;
     let Some(cell) = cell else {
         let text = job.stage("encode", |_| scene.to_text().map_err(|e| Failure::of(&args.input, e)))?;
         job.write(&args.output, text.as_bytes())?;
