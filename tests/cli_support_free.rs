@@ -68,6 +68,16 @@ fn who_floats_above_the_bed_or_lies_below_it_is_told_of_drop() {
 }
 
 #[test]
+fn a_shape_that_grows_is_cut_at_the_bed_only_if_it_reaches_below() {
+    for (bottom, cut) in [(4.0, false), (0.0, false), (-2.0, true)] {
+        let folder = Folder::with_scene("box.trullo", &a_box(bottom));
+        let out = folder.trullo(&["support-free", "box.trullo", "-o", "b.trullo", "--operator", "grow"]);
+        let notes = String::from_utf8_lossy(&out.stderr).into_owned();
+        assert_eq!(notes.contains("below the bed"), cut, "bottom at {bottom}: {notes}");
+    }
+}
+
+#[test]
 fn why_tells_what_was_changed_at_a_place_in_words_and_in_json() {
     // A post of 4 mm with a bar of 24 mm on top, in a node that is switched off.
     let scene = r#"{"format": "trullo", "version": 1, "root": {"type": "support_free", "mode": "off", "child":

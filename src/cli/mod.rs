@@ -20,7 +20,7 @@ pub use mesh::MeshArgs;
 pub use render::RenderArgs;
 pub use sketch::{SketchArgs, SolidKind};
 pub use slice::{LayerKind, SliceArgs};
-pub use support_free::SupportFreeArgs;
+pub use support_free::{SupportFreeArgs, SupportOperator};
 pub use tree::TreeArgs;
 
 use clap::{Parser, Subcommand};

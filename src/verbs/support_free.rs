@@ -2,7 +2,7 @@
 
 mod why;
 
-use crate::cli::{ConstraintArgs, SupportFreeArgs};
+use crate::cli::{ConstraintArgs, SupportFreeArgs, SupportOperator};
 use crate::constraint;
 use crate::failure::Failure;
 use crate::input::{self, Input, Prefer};
@@ -11,13 +11,16 @@ use crate::meshing;
 use crate::output::{Report, check_writable, number, short};
 use crate::verbs::mesh::tell;
 use blobtree::build::{Build, primitive};
-use blobtree::{Bake, BakeStore, Node, NodeRef, Primitive, Scene, SupportFree, Tree};
+use blobtree::{Aabb, Bake, BakeStore, Field, ISO, Node, NodeRef, Primitive, Scene, SupportFree, Tree};
 use glam::Vec3;
 use mesh::Mesh;
 use std::path::Path;
 
 /// How far the field of a mesh reaches beyond its surface, in layers: far enough to be cut smoothly.
 const FALLOFF_LAYERS: f32 = 8.0;
+
+/// Most places along a side at which the field is looked at.
+const MOST_ALONG: f32 = 512.0;
 
 /// Makes a scene or mesh support-free and writes a scene or a mesh.
 ///
@@ -172,17 +175,47 @@ fn tell_bake(args: &SupportFreeArgs, bakes: &BakeStore, root: &NodeRef, report: 
     report.put("layer_height_mm", number(args.layer_height));
     report.put("removed_mm3", bake.removed_mm3);
     report.put("added_mm3", bake.added_mm3);
-    report.put("cut_at_bed", bake.cut_at_bed);
+    // Grown matter always goes on below the bed; the shape may not.
+    let grows = args.operator == SupportOperator::Grow;
+    let cut_at_bed = bake.cut_at_bed && (!grows || reaches_below_bed(args, bakes, root));
+    report.put("cut_at_bed", cut_at_bed);
     report.line(format!(
         "{}: {:.1} mm³ taken away, {:.1} mm³ added",
         args.operator.name(),
         bake.removed_mm3,
         bake.added_mm3
     ));
-    if bake.cut_at_bed {
+    if cut_at_bed {
         let remedy = if args.drop { "" } else { "; --drop puts its lowest point on the bed" };
         report.notices.push(format!("the shape reaches below the bed z = 0 and was cut there{remedy}"));
     }
+}
+
+/// Whether the shape that was made support-free is solid half a layer below the bed, at places a layer apart, or at
+/// [`MOST_ALONG`] along a side.
+fn reaches_below_bed(args: &SupportFreeArgs, bakes: &BakeStore, root: &NodeRef) -> bool {
+    let drawn = root.children().first().map(|child| bakes.compile(child));
+    let Some(drawn) = drawn else { return false };
+    let support = drawn.support();
+    let below = -0.5 * args.layer_height;
+    if support.is_empty() || support.min.z > below {
+        return false;
+    }
+    let plane = Aabb { min: support.min.with_z(below), max: support.max.with_z(below) };
+    let mut sampler = drawn.sampler();
+    if sampler.enter(plane).hi < ISO {
+        return false;
+    }
+    let count = |length: f32| (length / args.layer_height).ceil().clamp(1.0, MOST_ALONG) as usize;
+    let (width, depth) = (count(plane.size().x), count(plane.size().y));
+    let share = |n: usize, count: usize| (n as f32 + 0.5) / count as f32;
+    let mut values = vec![0.0; width];
+    (0..depth).any(|y| {
+        let place = |x: usize| plane.min + plane.size() * Vec3::new(share(x, width), share(y, depth), 0.0);
+        let places: Vec<Vec3> = (0..width).map(place).collect();
+        sampler.values(&places, &mut values);
+        values.iter().any(|value| *value >= ISO)
+    })
 }
 
 /// The reason if all of a shape was taken away.
