@@ -1,9 +1,10 @@
 //! Why a node is solid or empty somewhere, in scenes whose answers are known.
 
 use crate::common::{baked, ball_on_stem, growing, trimming};
-use blobtree::build::{Build, cuboid, cylinder, point};
-use blobtree::{BakeStore, BrushKind, BrushStroke, Field, ISO, NodeRef, SupportFree, SupportMode};
+use blobtree::build::{Build, cuboid, cylinder, point, segment};
+use blobtree::{BakeStore, BrushKind, BrushStroke, Field, ISO, NodeRef, SupportFree, SupportMode, Tree};
 use glam::Vec3;
+use polygonizer::CellSize;
 use printable::{Cause, Change, Rebaker};
 use std::sync::Arc;
 
@@ -127,4 +128,51 @@ fn a_node_that_is_switched_off_or_not_baked_changes_nothing() {
     assert_eq!(why(&baked(letter_t(), off), [10., 0., 18.]), []);
     let root: NodeRef = letter_t().support_free(trimming(45.0, 0.25)).into();
     assert_eq!(why(&(root, BakeStore::new()), [10., 0., 18.]), []);
+}
+
+#[test]
+fn what_settling_took_says_so() {
+    // Thin arms, whose tips the lattice does not see.
+    let block = cuboid([0., 0., 6.], [14., 10., 12.]);
+    let arms = segment([0., 0., 9.], [14., 1., 8.], 0.6).union(segment([0., 2., 10.], [-13., 4., 5.], 0.4));
+    let (root, unsettled) = baked(block.union(arms), trimming(45.0, 0.25));
+    let mut store = BakeStore::new();
+    let cell = CellSize::from_mm(0.25).expect("legal");
+    store.bake(&root, &Rebaker::new().settling(cell)).expect("it can be baked");
+    let (before, after) = (unsettled.compile(&root), store.compile(&root));
+    let places = (0..1_000_000).map(|n| {
+        let [x, y, z] = [n % 250, n / 250 % 80, n / 20_000].map(|n| n as f32);
+        [x * 0.1 - 12.0, y * 0.1 - 2.0, z * 0.125 + 4.0]
+    });
+    let solid = |tree: &Tree, place: &[f32; 3]| tree.value(Vec3::from(*place)) >= ISO;
+    let settled = places.filter(|place| solid(&before, place) && !solid(&after, place));
+    let settled: Vec<[f32; 3]> = settled.take(5).collect();
+    assert!(!settled.is_empty(), "nothing was settled");
+    let known = (root, store);
+    settled.iter().for_each(|place| assert_eq!(only(&known, *place).cause, Cause::Settled, "{place:?}"));
+}
+
+#[test]
+fn there_is_a_cause_exactly_where_the_node_differs_from_its_child() {
+    let strokes = [
+        BrushStroke::new(BrushKind::RemoveTrim, 2.0, [[2., 0., 3.]]),
+        BrushStroke::new(BrushKind::AddGrow, 1.5, [[9., 3., 12.]]),
+    ];
+    for (rule, brushed) in [trimming(45.0, 0.25), growing(45.0, 0.25)].into_iter().zip([true, false]) {
+        let strokes = if brushed { strokes.clone().map(Arc::new).to_vec() } else { Vec::new() };
+        let (root, store) = baked(letter_t(), SupportFree { strokes, ..rule });
+        let (child, made) = (store.compile(&root.children()[0]), store.compile(&root));
+        let mut rng = fastrand::Rng::with_seed(11);
+        let mut changed = 0;
+        for n in 0..400 {
+            let p = Vec3::new(rng.f32() * 28. - 14., rng.f32() * 10. - 4., rng.f32() * 22. - 1.);
+            let [before, after] = [&child, &made].map(|tree| tree.value(p) >= ISO);
+            let changes = Rebaker::new().why(&root, &store, p).expect("there is an answer");
+            let added: Vec<bool> = changes.iter().map(|change| change.added).collect();
+            let expected = if before == after { vec![] } else { vec![after] };
+            assert_eq!(added, expected, "seed 11, place {n}, {p}: {changes:?}");
+            changed += changes.len();
+        }
+        assert!(changed > 10, "only {changed} of 400 places changed");
+    }
 }
