@@ -28,18 +28,23 @@ pub struct Change {
 }
 
 impl Rebaker<'_> {
-    /// What the support-free nodes of a tree changed at `place`, outermost first, and why. Empty if none did.
+    /// What the support-free nodes of a tree changed at each of `places`, outermost first, and why. Empty where none did.
     ///
-    /// - **In:** `place` in the root's space, mm, as are the places in the answer. `bakes` holds all nodes, as they were
+    /// - **In:** `places` in the root's space, mm, as are those in the answers. `bakes` holds all nodes, as they were
     ///   baked; nodes that are not in it are passed over, and so are those below a taper, twist or bend.
-    /// - **Cost:** a few samples where nothing changed. Else the voxels of the node, at most 512 along a side; for
-    ///   strokes, their replay as often as it takes to find the one among them by halving.
+    /// - **Cost:** a few samples where nothing changed. Else once the voxels of the node, at most 512 along a side; for
+    ///   each place that a stroke changed, replays until the one among them is found by halving.
     /// - **Errors:** as [`Baker::brush`](blobtree::Baker::brush).
-    pub fn why(&self, root: &NodeRef, bakes: &BakeStore, place: Vec3) -> Result<Vec<Change>, BakeError> {
-        let mut changes = Vec::new();
-        let question = Question { rebaker: self, bakes, place };
-        question.ask(root, NodePath::default(), Affine3A::IDENTITY, &mut changes)?;
-        Ok(changes)
+    pub fn why(
+        &self,
+        root: &NodeRef,
+        bakes: &BakeStore,
+        places: &[Vec3],
+    ) -> Result<Vec<Vec<Change>>, BakeError> {
+        let mut answers = vec![Vec::new(); places.len()];
+        let question = Question { rebaker: self, bakes, places };
+        question.ask(root, NodePath::default(), Affine3A::IDENTITY, &mut answers)?;
+        Ok(answers)
     }
 }
 
@@ -48,7 +53,7 @@ struct Question<'a> {
     rebaker: &'a Rebaker<'a>,
     bakes: &'a BakeStore,
     /// In the root's space.
-    place: Vec3,
+    places: &'a [Vec3],
 }
 
 impl Question<'_> {
@@ -57,7 +62,7 @@ impl Question<'_> {
         node: &NodeRef,
         path: NodePath,
         root_from_node: Affine3A,
-        changes: &mut Vec<Change>,
+        answers: &mut [Vec<Change>],
     ) -> Result<(), BakeError> {
         if !node.is_heard() {
             return Ok(());
@@ -66,11 +71,14 @@ impl Question<'_> {
             && rule.mode != SupportMode::Off
             && let Some(bake) = self.bakes.of(node)
         {
-            let place = root_from_node.inverse().transform_point3(self.place);
-            let known = stages::Known { rule, child, bake, bakes: self.bakes, rebaker: self.rebaker };
-            if let Some((added, cause)) = known.change_at(place)? {
-                let cause = cause.seen_through(&root_from_node);
-                changes.push(Change { node: path.clone(), added, cause });
+            let seen = stages::Seen::default();
+            let known = stages::Known { rule, child, bake, bakes: self.bakes, rebaker: self.rebaker, seen };
+            let node_from_root = root_from_node.inverse();
+            for (place, changes) in self.places.iter().zip(&mut *answers) {
+                if let Some((added, cause)) = known.change_at(node_from_root.transform_point3(*place))? {
+                    let cause = cause.seen_through(&root_from_node);
+                    changes.push(Change { node: path.clone(), added, cause });
+                }
             }
         }
         let root_from_child = match &node.shape {
@@ -79,7 +87,7 @@ impl Question<'_> {
         };
         let Some(root_from_child) = root_from_child else { return Ok(()) };
         for (n, child) in node.children().iter().enumerate() {
-            self.ask(child, path.child(n), root_from_child, changes)?;
+            self.ask(child, path.child(n), root_from_child, answers)?;
         }
         Ok(())
     }

@@ -9,6 +9,7 @@ use blobtree::{
     SupportFree, Tree,
 };
 use glam::Vec3;
+use std::cell::OnceCell;
 
 /// Steps in which a surface is looked for, in layers.
 const STEP_LAYERS: f32 = 0.25;
@@ -23,6 +24,16 @@ pub(super) struct Known<'a> {
     pub bake: &'a Bake,
     pub bakes: &'a BakeStore,
     pub rebaker: &'a Rebaker<'a>,
+    pub seen: Seen,
+}
+
+/// The node's voxels, once they were needed; the bed is at 0.
+#[derive(Default)]
+pub(super) struct Seen {
+    /// Of what grew and the child, what trimming takes.
+    taken: OnceCell<Option<voxels::Taken>>,
+    /// Of the child, what nothing carries.
+    hanging: OnceCell<Vec<Vec3>>,
 }
 
 /// Hands out what is known, and replays strokes if it is to.
@@ -103,15 +114,23 @@ impl Known<'_> {
 
     /// What hangs of the child, for which matter was grown here.
     fn why_grown(&self, place: Vec3) -> Result<Cause, BakeError> {
-        let child = self.stage(&Bake::default(), -self.bed())?;
-        let holds = voxels::held_by(self.support_rule()?, &child, place - self.bed());
+        let rule = self.support_rule()?;
+        let hanging = match self.seen.hanging.get() {
+            Some(hanging) => hanging,
+            None => {
+                let child = self.stage(&Bake::default(), -self.bed())?;
+                self.seen.hanging.get_or_init(|| voxels::hanging(rule, &child))
+            }
+        };
+        let holds = voxels::held_by(rule, hanging, place - self.bed());
         Ok(Cause::Grown { holds: holds.map(|holds| holds + self.bed()) })
     }
 
     /// Why the rule took what was solid in `before`.
     fn why_taken(&self, before: &Bake, place: Vec3) -> Result<Cause, BakeError> {
-        let tree = self.stage(before, -self.bed())?;
-        if voxels::is_island(self.support_rule()?, &tree, place - self.bed()) {
+        let (tree, rule) = (self.stage(before, -self.bed())?, self.support_rule()?);
+        let taken = self.seen.taken.get_or_init(|| voxels::Taken::new(rule, &tree));
+        if taken.as_ref().is_some_and(|taken| taken.is_island(place - self.bed())) {
             return Ok(Cause::Island);
         }
         Ok(self.overhang_below(&tree, place - self.bed()).unwrap_or(Cause::Toppled))

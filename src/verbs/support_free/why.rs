@@ -25,8 +25,7 @@ pub fn tell(
     }
     let answers = job.stage("why", |watch| {
         let rebaker = Rebaker::with_cancel(watch.cancel);
-        let answer = |place: &Vec3| rebaker.why(root, bakes, *place);
-        let answers: Result<Vec<_>, _> = places.iter().map(answer).collect();
+        let answers = rebaker.why(root, bakes, places);
         answers.map_err(|error| match error {
             BakeError::Cancelled => Failure::Interrupted,
             other => Failure::of(path, other),
