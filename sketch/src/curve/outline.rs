@@ -59,11 +59,13 @@ impl Outline {
 
 /// Reads lines as outlines and holes.
 pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -> Result<Outline, NoOutline> {
-    lines.sort_by(|a, b| {
-        let [a_extent, b_extent] = [a, b].map(|line| coarse(super::line::extent(&line.samples)));
-        b_extent.total_cmp(&a_extent).then(a.stroke.cmp(&b.stroke))
-    });
-    lines.truncate(MOST_LINES);
+    let extent = |line: &Line| super::line::extent(&line.samples);
+    if lines.len() > MOST_LINES {
+        // Of a pattern of equal lines, rounding leaves some out everywhere, rather than all of one side.
+        lines.sort_by(|a, b| extent(b).total_cmp(&extent(a)).then(a.stroke.cmp(&b.stroke)));
+        lines.truncate(MOST_LINES);
+    }
+    lines.sort_by(|a, b| coarse(extent(b)).total_cmp(&coarse(extent(a))).then(a.stroke.cmp(&b.stroke)));
     let mut chains = chains::chains(lines);
     let mut bridges = chains::bridges(&chains);
     closing::close(&mut chains, &mut bridges);
