@@ -12,7 +12,6 @@ mod corners;
 mod cut_corners;
 mod fair;
 mod groups;
-mod holders;
 mod line;
 mod lobes;
 mod outline;

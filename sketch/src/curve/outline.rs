@@ -5,7 +5,7 @@ use super::closing;
 use super::corners::Wishes;
 use super::fair::{fair, turned};
 use super::groups::groups;
-use super::line::{Line, coarse};
+use super::line::Line;
 use super::lobes::lobes;
 use super::polygon;
 use super::silhouette::{PENS, WIDE_PENS, silhouettes};
@@ -59,13 +59,12 @@ impl Outline {
 
 /// Reads lines as outlines and holes.
 pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -> Result<Outline, NoOutline> {
-    let extent = |line: &Line| super::line::extent(&line.samples);
-    if lines.len() > MOST_LINES {
-        // Of a pattern of equal lines, rounding leaves some out everywhere, rather than all of one side.
-        lines.sort_by(|a, b| extent(b).total_cmp(&extent(a)).then(a.stroke.cmp(&b.stroke)));
-        lines.truncate(MOST_LINES);
-    }
-    lines.sort_by(|a, b| coarse(extent(b)).total_cmp(&coarse(extent(a))).then(a.stroke.cmp(&b.stroke)));
+    lines.sort_by(|a, b| {
+        super::line::extent(&b.samples)
+            .total_cmp(&super::line::extent(&a.samples))
+            .then(a.stroke.cmp(&b.stroke))
+    });
+    lines.truncate(MOST_LINES);
     let mut chains = chains::chains(lines);
     let mut bridges = chains::bridges(&chains);
     closing::close(&mut chains, &mut bridges);
@@ -74,7 +73,7 @@ pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -
         .map(|members| Group::of(&members, &chains, &bridges))
         .filter(|group| group.extent > LEAST_EXTENT)
         .collect();
-    groups.sort_by(|a, b| coarse(b.extent).total_cmp(&coarse(a.extent)));
+    groups.sort_by(|a, b| b.extent.total_cmp(&a.extent));
     groups.truncate(MOST_GROUPS);
     let mut found: Vec<Outline> = groups.iter().map(|group| group.outline(wishes)).collect();
     close_the_open(&groups, &mut found, wishes);
