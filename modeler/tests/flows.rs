@@ -14,6 +14,15 @@ fn types(screen: &Screen) -> Vec<&'static str> {
     screen.state().bench.scene().root.children().iter().map(|node| node.type_name()).collect()
 }
 
+/// A screen with the snowman of the gallery on the table.
+fn snowman() -> Screen {
+    let mut screen = screen(None);
+    press(&mut screen, "File");
+    press(&mut screen, "Examples…");
+    press(&mut screen, "Snowman");
+    screen
+}
+
 #[test]
 fn a_drawn_circle_becomes_the_solid_that_is_chosen_for_it() {
     let mut screen = screen(None);
@@ -103,10 +112,7 @@ fn what_is_drawn_with_the_eraser_is_rubbed_out() {
 
 #[test]
 fn a_tap_selects_the_part_below_it_and_one_beside_selects_nothing() {
-    let mut screen = screen(None);
-    press(&mut screen, "File");
-    press(&mut screen, "Examples…");
-    press(&mut screen, "Snowman");
+    let mut screen = snowman();
     assert!(screen.state().solid().is_some_and(|solid| !solid.corners.is_empty()));
     // All of it shows, so the middle of the view is on it.
     let at = middle(&screen);
@@ -119,10 +125,7 @@ fn a_tap_selects_the_part_below_it_and_one_beside_selects_nothing() {
 
 #[test]
 fn the_field_lens_tells_what_makes_the_value_under_the_pen() {
-    let mut screen = screen(None);
-    press(&mut screen, "File");
-    press(&mut screen, "Examples…");
-    press(&mut screen, "Snowman");
+    let mut screen = snowman();
     screen.key_press(Key::L);
     settle(&mut screen);
     let bar = screen.get_by_label("Lessons").rect().center();

@@ -31,11 +31,17 @@ fn random_part(random: &mut Random) -> (TurnedBox, u64) {
     (TurnedBox { center: random.point(9.0), turn: random.turn(), half }, random.next())
 }
 
+/// Seven random parts of a body, and the noise to go on with.
+fn random_parts(seed: u64) -> (Random, Vec<(TurnedBox, u64)>) {
+    let mut random = Random(seed);
+    let parts = (0..7).map(|_| random_part(&mut random)).collect();
+    (random, parts)
+}
+
 #[test]
 fn after_random_edits_an_updated_surface_equals_a_fresh_one_exactly() {
     for seed in 0..4 {
-        let mut random = Random(seed);
-        let mut parts: Vec<_> = (0..7).map(|_| random_part(&mut random)).collect();
+        let (mut random, mut parts) = random_parts(seed);
         let options = Options::default();
         let size = cell(0.31);
         let mut surface = Surface::build(&body(&parts), size, &options).expect("small");
@@ -65,8 +71,7 @@ fn after_random_edits_an_updated_surface_equals_a_fresh_one_exactly() {
 #[test]
 fn an_update_of_several_boxes_equals_a_fresh_surface_exactly() {
     for seed in 0..4 {
-        let mut random = Random(seed);
-        let mut parts: Vec<_> = (0..7).map(|_| random_part(&mut random)).collect();
+        let (mut random, mut parts) = random_parts(seed);
         let options = Options::default();
         let mut surface = Surface::build(&body(&parts), cell(0.31), &options).expect("small");
         let mut dirty = Vec::new();
