@@ -43,7 +43,7 @@ const GOALS: [Goal; 11] = [
     Goal { name: "star", from: [30, 250, 500], most: [0.5, 1.5, 2.5] },
     Goal { name: "crescent", from: [120, 120, 500], most: [0.5, 1.5, 2.5] },
     Goal { name: "spiral", from: [1000, 1000, 1000], most: [0.5, 2.0, 4.5] },
-    Goal { name: "figure of eight", from: [120, 500, 1000], most: [0.5, 1.5, 1.5] },
+    Goal { name: "figure of eight", from: [60, 30, 250], most: [0.5, 1.5, 1.5] },
     Goal { name: "A", from: [120, 250, 1000], most: [0.5, 1.5, 2.0] },
     Goal { name: "B", from: [250, 500, 1000], most: [0.5, 1.5, 2.9] },
     Goal { name: "O", from: [30, 30, 1000], most: [0.5, 1.5, 1.5] },

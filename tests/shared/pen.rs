@@ -25,7 +25,7 @@ const MM: f32 = 60.0;
 const ALIKE: usize = 97;
 
 /// So many become the same solid. Strokes that differ in a millionth of a millimetre are solved differently now and then.
-const SAME_SOLIDS: usize = 90;
+const SAME_SOLIDS: usize = 95;
 
 /// Solids are the same if they differ in less than this share.
 const SAME: f32 = 0.01;

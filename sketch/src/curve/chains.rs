@@ -1,7 +1,7 @@
 //! Lines joined by their ends into chains, and the groups of chains that touch.
 
-use super::line::{Line, Sample, extent, length};
-use super::polygon::{area, bounds, crossing};
+use super::line::{Line, Sample, coarse, extent, length};
+use super::polygon::{area, bounds, crossings, touching};
 use glam::DVec2;
 
 /// Ends nearer than this belong together, in drawing sizes: what people leave open between strokes.
@@ -17,6 +17,8 @@ const LEAST_AREA: f64 = 0.004;
 /// A loop smaller than this part of its line is not the line with its tails cut off: the tail is the string of a
 /// balloon.
 const MOST_OF_IT: f64 = 0.5;
+/// Places nearer to each other than this, in drawing sizes, are one: more than rounding, less than can be seen.
+pub(super) const AS_NEAR: f64 = 1e-5;
 /// What counts as no weight where there is nothing drawn.
 const WEIGHT_OF_A_GAP: f64 = 1e-3;
 
@@ -48,7 +50,8 @@ impl Chain {
     /// Whether there is room inside, were it closed.
     pub fn has_room(&self) -> bool {
         let places: Vec<DVec2> = self.samples.iter().map(|sample| sample.at).collect();
-        area(&places).abs() > LEAST_AREA * length(&self.samples) * self.extent()
+        let least = LEAST_AREA * length(&self.samples) * self.extent();
+        area(&places).abs() > least || has_lobes(&places, least)
     }
 
     /// Closes the chain across its gap.
@@ -59,6 +62,17 @@ impl Chain {
         self.samples.extend(gap_samples(last, first));
         self.closed = true;
     }
+}
+
+/// Whether a closed line crosses itself so that it goes around one side and around the other the other way, such as an
+/// eight: together they may enclose nothing.
+fn has_lobes(places: &[DVec2], least: f64) -> bool {
+    let all = area(places);
+    crossings(places).any(|(i, j, _)| {
+        let one = area(&places[i.min(j) + 1..=i.max(j)]);
+        let other = all - one;
+        one * other < 0. && one.abs().min(other.abs()) > least
+    })
 }
 
 /// Samples that lead across a gap without holding the curve to the straight line.
@@ -94,7 +108,7 @@ fn closed_if_near(mut chain: Chain) -> Chain {
     if let Some(trimmed) = without_overshoot(&chain.samples) {
         chain.samples = trimmed;
         chain.closed = true;
-    } else if chain.gap() <= CLOSE_SHARE * chain.extent() && chain.has_room() {
+    } else if chain.gap() <= CLOSE_SHARE * chain.extent() + AS_NEAR && chain.has_room() {
         chain.close();
     }
     chain
@@ -127,18 +141,18 @@ fn without_overshoot(samples: &[Sample]) -> Option<Vec<Sample>> {
     let mut best: Option<(f64, usize, usize, DVec2)> = None;
     for &(i, before) in &heads {
         for &(j, after) in ends.iter().filter(|&&(j, _)| j > i + 1) {
-            let Some((s, t)) = crossing(segment(i), segment(j)) else { continue };
+            let Some((s, t)) = touching(segment(i), segment(j), AS_NEAR) else { continue };
             let (a, b) = segment(i);
             let head = before + s * a.distance(b);
             let end = after + (1. - t) * samples[j].at.distance(samples[j + 1].at);
-            if head.max(end) <= most && best.is_none_or(|(least, ..)| head + end < least) {
+            if head.max(end) <= most && best.is_none_or(|(least, ..)| head + end < least - AS_NEAR) {
                 best = Some((head + end, i, j, a.lerp(b, s)));
             }
         }
     }
     let (_, i, j, at) = best?;
     let mut kept = vec![Sample { at, ..samples[i] }];
-    kept.extend(samples[i + 1..=j].iter().filter(|sample| sample.at.distance(at) > 1e-6));
+    kept.extend(samples[i + 1..=j].iter().filter(|sample| sample.at.distance(at) > 2. * AS_NEAR));
     let places: Vec<DVec2> = kept.iter().map(|sample| sample.at).collect();
     let has_room = area(&places).abs() > LEAST_AREA * length(&kept) * extent(&kept);
     (has_room && extent(&kept) > MOST_OF_IT * extent(samples)).then_some(kept)
@@ -158,12 +172,12 @@ fn linked(open: Vec<Chain>) -> Vec<Chain> {
     for (k, &a) in ends.iter().enumerate() {
         for &b in ends[k + 1..].iter().filter(|b| b.0 != a.0) {
             let gap = place(a).distance(place(b));
-            if gap <= reach[a.0].min(reach[b.0]) {
+            if gap <= reach[a.0].min(reach[b.0]) + AS_NEAR {
                 pairs.push((gap, a, b));
             }
         }
     }
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    pairs.sort_by(|a, b| coarse(a.0).total_cmp(&coarse(b.0)).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut partner: Vec<[Option<End>; 2]> = vec![[None; 2]; open.len()];
     for (_, a, b) in pairs {
         let free = |end: End| partner[end.0][usize::from(end.1)].is_none();
@@ -238,7 +252,7 @@ pub(super) fn bridges(chains: &[Chain]) -> Vec<(usize, usize, [DVec2; 2])> {
             let nearest = own
                 .into_iter()
                 .chain(other)
-                .min_by(|a, b| a.1.distance_squared(end).total_cmp(&b.1.distance_squared(end)));
+                .min_by(|a, b| coarse(a.1.distance(end)).total_cmp(&coarse(b.1.distance(end))));
             if let Some((j, at)) = nearest.filter(|(_, at)| at.distance(end) <= reach) {
                 found.push((i, j, [end, at]));
             }

@@ -2,7 +2,7 @@
 
 use super::chains::Chain;
 use super::groups::groups;
-use super::line::extent;
+use super::line::{coarse, extent};
 use super::polygon;
 use super::raster::Raster;
 use glam::DVec2;
@@ -113,7 +113,7 @@ fn gaps(chains: &[Chain], bridges: &[Bridge]) -> Vec<Gap> {
     let mut open: Vec<(usize, f64)> =
         chains.iter().enumerate().filter(|(_, c)| !c.closed).map(|(i, c)| (i, c.extent())).collect();
     open.retain(|&(_, extent)| extent > LEAST_EXTENT);
-    open.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    open.sort_by(|a, b| coarse(b.1).total_cmp(&coarse(a.1)).then(a.0.cmp(&b.0)));
     open.truncate(MOST);
     if open.is_empty() {
         return Vec::new();
@@ -141,7 +141,7 @@ fn gaps(chains: &[Chain], bridges: &[Bridge]) -> Vec<Gap> {
         }
     }
     between.retain(|gap| gap.length() <= BETWEEN * gap.extent);
-    between.sort_by(|a, b| a.length().total_cmp(&b.length()).then(a.chains.cmp(&b.chains)));
+    between.sort_by(|a, b| coarse(a.length()).total_cmp(&coarse(b.length())).then(a.chains.cmp(&b.chains)));
     between.truncate(4 * MOST);
     gaps.extend(between);
     gaps

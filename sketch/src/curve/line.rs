@@ -206,6 +206,12 @@ fn cubic_misfit(five: &[Sample]) -> f64 {
     if misfit.is_finite() { misfit } else { 0. }
 }
 
+/// A length in steps that rounding errors do not reach, in drawing sizes, for comparing: what people and programs draw
+/// is often just as long. Of whole numbers of something, none lies between two steps, which are a power of two.
+pub(super) fn coarse(length: f64) -> f64 {
+    (length * 131_072.).round()
+}
+
 pub(super) fn length(samples: &[Sample]) -> f64 {
     samples.windows(2).map(|pair| pair[0].at.distance(pair[1].at)).sum()
 }

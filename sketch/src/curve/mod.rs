@@ -12,6 +12,7 @@ mod corners;
 mod cut_corners;
 mod fair;
 mod groups;
+mod holders;
 mod line;
 mod lobes;
 mod outline;

@@ -5,10 +5,10 @@ use super::closing;
 use super::corners::Wishes;
 use super::fair::{fair, turned};
 use super::groups::groups;
-use super::line::Line;
+use super::line::{Line, coarse};
 use super::lobes::lobes;
 use super::polygon;
-use super::silhouette::{PENS, WIDE_PENS, silhouettes};
+use super::silhouette::{PENS, Silhouette, WIDE_PENS, silhouettes};
 use super::{Contour, NoOutline};
 use glam::DVec2;
 
@@ -59,12 +59,13 @@ impl Outline {
 
 /// Reads lines as outlines and holes.
 pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -> Result<Outline, NoOutline> {
-    lines.sort_by(|a, b| {
-        super::line::extent(&b.samples)
-            .total_cmp(&super::line::extent(&a.samples))
-            .then(a.stroke.cmp(&b.stroke))
-    });
-    lines.truncate(MOST_LINES);
+    let extent = |line: &Line| super::line::extent(&line.samples);
+    if lines.len() > MOST_LINES {
+        // Of a pattern of equal lines, rounding leaves some out everywhere, rather than all of one side.
+        lines.sort_by(|a, b| extent(b).total_cmp(&extent(a)).then(a.stroke.cmp(&b.stroke)));
+        lines.truncate(MOST_LINES);
+    }
+    lines.sort_by(|a, b| coarse(extent(b)).total_cmp(&coarse(extent(a))).then(a.stroke.cmp(&b.stroke)));
     let mut chains = chains::chains(lines);
     let mut bridges = chains::bridges(&chains);
     closing::close(&mut chains, &mut bridges);
@@ -73,7 +74,7 @@ pub(super) fn outline(mut lines: Vec<Line>, wishes: &Wishes, fill_holes: bool) -
         .map(|members| Group::of(&members, &chains, &bridges))
         .filter(|group| group.extent > LEAST_EXTENT)
         .collect();
-    groups.sort_by(|a, b| b.extent.total_cmp(&a.extent));
+    groups.sort_by(|a, b| coarse(b.extent).total_cmp(&coarse(a.extent)));
     groups.truncate(MOST_GROUPS);
     let mut found: Vec<Outline> = groups.iter().map(|group| group.outline(wishes)).collect();
     close_the_open(&groups, &mut found, wishes);
@@ -178,11 +179,12 @@ impl<'a> Group<'a> {
     fn filled(&self, wishes: &Wishes, pens: &[f64]) -> Outline {
         let mut outline = Outline::default();
         for silhouette in silhouettes(&self.chains, &self.bridges, pens) {
-            let readings = [&silhouette.samples, &silhouette.plain];
+            let Silhouette { samples, plain, wide, filled, strokes } = silhouette;
+            let readings = [&samples, &plain, &wide, &filled];
             let fair = readings.into_iter().find_map(|samples| fair(samples, wishes).filter(is_simple));
-            let filled = || Contour { points: silhouette.filled, corners: Vec::new() };
-            outline.contours.push(fair.unwrap_or_else(filled));
-            outline.used.extend(silhouette.strokes);
+            let rough = || Contour { points: filled.iter().map(|s| s.at).collect(), corners: Vec::new() };
+            outline.contours.push(fair.unwrap_or_else(rough));
+            outline.used.extend(strokes);
         }
         outline
     }

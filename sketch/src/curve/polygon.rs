@@ -45,13 +45,22 @@ pub(super) fn near(both: [&[DVec2]; 2]) -> bool {
 
 /// Where two segments cross: the shares of their lengths.
 pub(super) fn crossing(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> Option<(f64, f64)> {
+    touching(a, b, 0.)
+}
+
+/// As [`crossing`], also where segments end up to `reach` short of each other.
+pub(super) fn touching(a: (DVec2, DVec2), b: (DVec2, DVec2), reach: f64) -> Option<(f64, f64)> {
     let (along_a, along_b, between) = (a.1 - a.0, b.1 - b.0, b.0 - a.0);
     let turn = along_a.perp_dot(along_b);
     if turn == 0. {
         return None;
     }
     let (s, t) = (between.perp_dot(along_b) / turn, between.perp_dot(along_a) / turn);
-    ((0. ..=1.).contains(&s) && (0. ..=1.).contains(&t)).then_some((s, t))
+    let on = |share: f64, along: DVec2| {
+        let beyond = if reach > 0. { reach / along.length() } else { 0. };
+        (-beyond..=1. + beyond).contains(&share).then_some(share.clamp(0., 1.))
+    };
+    on(s, along_a).zip(on(t, along_b))
 }
 
 /// An edge of one of several polygons.
@@ -75,23 +84,30 @@ impl Edge {
 ///
 /// **Cost:** edges sorted by x; about linear for evenly spaced points.
 pub(super) fn cross<'a>(polygons: impl Iterator<Item = &'a [DVec2]>) -> bool {
-    crossings(polygons).next().is_some()
+    crossings_of(polygons).next().is_some()
+}
+
+/// Every two edges of a polygon that cross, and where. **Cost:** as [`cross`].
+pub(super) fn crossings(points: &[DVec2]) -> impl Iterator<Item = (usize, usize, DVec2)> {
+    crossings_of(std::iter::once(points))
 }
 
 /// Two edges i < j of a polygon that cross, the ones nearest to each other along it, and where.
 pub(super) fn first_crossing(points: &[DVec2]) -> Option<(usize, usize, DVec2)> {
-    let nearest = crossings(std::iter::once(points)).min_by_key(|&(a, b, _)| (a.abs_diff(b), a.min(b)));
+    let nearest = crossings(points).min_by_key(|&(a, b, _)| (a.abs_diff(b), a.min(b)));
     nearest.map(|(a, b, at)| (a.min(b), a.max(b), at))
 }
 
 /// As [`first_crossing`], of a polygon that crosses itself once.
 pub(super) fn only_crossing(points: &[DVec2]) -> Option<(usize, usize, DVec2)> {
-    let mut all = crossings(std::iter::once(points));
+    let mut all = crossings(points);
     let (a, b, at) = all.next()?;
     all.next().is_none().then_some((a.min(b), a.max(b), at))
 }
 
-fn crossings<'a>(polygons: impl Iterator<Item = &'a [DVec2]>) -> impl Iterator<Item = (usize, usize, DVec2)> {
+fn crossings_of<'a>(
+    polygons: impl Iterator<Item = &'a [DVec2]>,
+) -> impl Iterator<Item = (usize, usize, DVec2)> {
     let mut all: Vec<Edge> = polygons
         .enumerate()
         .flat_map(|(polygon, points)| {
