@@ -7,7 +7,7 @@ use crate::job::Job;
 use crate::resolution::cell_size;
 use blobtree::{Node, Scene, Tree};
 use mesh::io::{Attachments, Format};
-use mesh::{Fault, Mesh, SelfIntersections, Validity};
+use mesh::{Fault, Mesh, SelfIntersections, Validity, simplify};
 use polygonizer::{CellSize, Options, Surface};
 use std::io::Cursor;
 use std::path::Path;
@@ -97,7 +97,17 @@ pub fn format_of_output(path: &Path) -> Result<Format, Failure> {
     })
 }
 
-/// Writes a mesh if it is closed, edge-manifold and oriented. Stages "verify", "encode" and "write".
+/// The mesh with fewer triangles: its surface has moved by no more than `tolerance` mm. Stage "simplify".
+///
+/// Errors: [`Failure::Interrupted`].
+pub fn simplified(mesh: &Mesh, tolerance: f64, job: &mut Job) -> Result<Mesh, Failure> {
+    job.stage("simplify", |watch| {
+        simplify(mesh, tolerance, &|| watch.cancel.is_cancelled()).ok_or(Failure::Interrupted)
+    })
+}
+
+/// Writes a mesh if it is closed, edge-manifold and oriented, in the format that the name says. Stages "verify",
+/// "encode" and "write".
 ///
 /// Errors: a mesh that is not, with what is wrong; a file that cannot be written. Then nothing was written.
 pub fn write_mesh(
@@ -107,7 +117,20 @@ pub fn write_mesh(
     attachments: &Attachments,
     job: &mut Job,
 ) -> Result<(), Failure> {
-    let format = format_of_output(output)?;
+    write_mesh_as(source, output, mesh, format_of_output(output)?, attachments, job)
+}
+
+/// The same in any format.
+///
+/// Errors: as [`write_mesh`].
+pub fn write_mesh_as(
+    source: &Path,
+    output: &Path,
+    mesh: &Mesh,
+    format: Format,
+    attachments: &Attachments,
+    job: &mut Job,
+) -> Result<(), Failure> {
     job.stage("verify", |_| verify(source, mesh))?;
     let bytes = job.stage("encode", |_| {
         let mut bytes = Cursor::new(Vec::new());

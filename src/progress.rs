@@ -1,6 +1,7 @@
 //! A progress bar on the terminal for stages that take longer than a second.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::fmt;
 use std::io::IsTerminal;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -23,10 +24,13 @@ struct Stage {
     share: Option<f32>,
 }
 
+/// Who else hears of a stage and how much of it is done.
+type Listener = Box<dyn Fn(&'static str, Option<f32>) + Send + Sync>;
+
 /// Watches the stages of the work and draws a bar for the long ones. Silent unless stderr is a terminal.
-#[derive(Debug)]
 pub struct Meter {
     stage: Arc<Mutex<Option<Stage>>>,
+    listener: Option<Listener>,
     /// Ends the drawing when dropped.
     drawer: Option<(Sender<()>, JoinHandle<()>)>,
 }
@@ -40,12 +44,21 @@ impl Meter {
             let seen = Arc::clone(&stage);
             (end, std::thread::spawn(move || draw(&seen, &ended)))
         });
-        Self { stage, drawer }
+        Self { stage, listener: None, drawer }
+    }
+
+    /// A meter that draws nothing, but tells somebody of each stage as it goes on.
+    pub fn telling(listener: impl Fn(&'static str, Option<f32>) + Send + Sync + 'static) -> Self {
+        let stage = Arc::default();
+        Self { stage, listener: Some(Box::new(listener)), drawer: None }
     }
 
     /// A stage begins.
     pub fn begin(&self, name: &'static str) {
         self.set(Some(Stage { name, since: Instant::now(), share: None }));
+        if let Some(listener) = &self.listener {
+            listener(name, None);
+        }
     }
 
     /// The stage ends.
@@ -55,16 +68,26 @@ impl Meter {
 
     /// How much of the stage is done, from 0 to 1; less than was told before is ignored.
     pub fn report(&self, share: f32) {
-        if self.drawer.is_none() {
+        if self.drawer.is_none() && self.listener.is_none() {
             return;
         }
         if let Some(stage) = &mut *self.stage.lock().unwrap_or_else(PoisonError::into_inner) {
-            stage.share = Some(stage.share.map_or(share, |before| before.max(share)));
+            let share = stage.share.map_or(share, |before| before.max(share));
+            stage.share = Some(share);
+            if let Some(listener) = &self.listener {
+                listener(stage.name, Some(share));
+            }
         }
     }
 
     fn set(&self, stage: Option<Stage>) {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = stage;
+    }
+}
+
+impl fmt::Debug for Meter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Meter").field("stage", &self.stage).finish_non_exhaustive()
     }
 }
 

@@ -1,7 +1,9 @@
 //! What the modeler asks of the program around it: files.
 
+use crate::errand::{Undone, Watch};
 use blobtree::{BakeStore, NodeRef, Scene, SceneSources};
 use polygonizer::Cancel;
+use serde::{Deserialize, Serialize};
 use sketch::stroke::Sketch;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,13 +13,13 @@ use std::sync::Arc;
 pub type Bake = Box<dyn FnMut(&NodeRef, &mut BakeStore, &Cancel) -> bool + Send>;
 
 /// What a file turned out to be.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Opened {
     /// A scene, to be worked on; with what was noticed.
     Scene(Scene, Vec<String>),
-    /// A mesh as the only part of a scene that is in no file yet: the scene, the file beside the mesh that it may be
-    /// saved as, and what was noticed.
-    Mesh(Scene, PathBuf, Vec<String>),
+    /// A mesh as the only part of a scene that is in no file yet, and that names it from the mesh's folder; with what
+    /// was noticed.
+    Mesh(Scene, Vec<String>),
     /// A drawing: strokes in pixels.
     Drawing(Sketch),
 }
@@ -27,33 +29,62 @@ pub enum Opened {
 pub enum Purpose {
     /// To be opened: a scene, a mesh or a drawing.
     Open,
+    /// To be added to what is there: a scene, a mesh or a drawing.
+    Add,
     /// To be written: the scene.
     Save,
     /// To be written: the mesh.
     Export,
 }
 
-/// Whoever opens and writes files.
-pub trait Desk {
+/// How a mesh is written.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ExportOptions {
+    /// How wide a cell is, mm: details smaller than that can get lost. Without it, one that fits the shape.
+    pub cell_mm: Option<f32>,
+    /// How far the surface may move when triangles are left out, mm; 0 keeps all.
+    pub tolerance_mm: f32,
+    /// Whether STL is written as text.
+    pub as_text: bool,
+    /// Whether 3MF carries the scene along, so that it can be opened again and changed.
+    pub carries_scene: bool,
+}
+
+impl Default for ExportOptions {
+    fn default() -> Self {
+        Self { cell_mm: None, tolerance_mm: 0.0, as_text: false, carries_scene: true }
+    }
+}
+
+/// Whoever opens and writes files. Long work is called on threads of its own, tells the [`Watch`] how far it is, and
+/// stops when that is cancelled.
+pub trait Desk: Send + Sync {
     /// Opens a scene, a mesh or a drawing.
     ///
     /// Errors: in words for the user, with the file and the place in it.
-    fn open(&mut self, path: &Path) -> Result<Opened, String>;
+    fn open(&self, path: &Path, watch: &Watch) -> Result<Opened, Undone>;
 
     /// What scenes need to be read: meshes beside `file`, and the solver of drawings.
-    fn sources<'a>(&'a mut self, file: Option<&'a Path>) -> Box<dyn SceneSources + 'a>;
+    fn sources<'a>(&'a self, file: Option<&'a Path>) -> Box<dyn SceneSources + 'a>;
 
-    /// Writes the mesh of a scene, in cells of this size or one that fits the shape; returns what was written, in words.
+    /// Writes the mesh of a scene, in the format that the name says; returns what was written, in words.
     ///
     /// Errors: in words for the user. Then nothing was written.
-    fn export(&mut self, scene: &Scene, path: &Path, cell_mm: Option<f32>) -> Result<String, String>;
+    fn export(
+        &self,
+        scene: &Scene,
+        path: &Path,
+        options: &ExportOptions,
+        watch: &Watch,
+    ) -> Result<String, Undone>;
 
     /// Lets the user choose a file in the system's own window, beside the running modeler; whether there is such a
     /// window.
-    fn browse(&mut self, purpose: Purpose, wake: Arc<dyn Fn() + Send + Sync>) -> bool;
+    fn browse(&self, purpose: Purpose, wake: Arc<dyn Fn() + Send + Sync>) -> bool;
 
     /// The file that was chosen since the last look; `Some(None)` if none was.
-    fn browsed(&mut self) -> Option<Option<PathBuf>>;
+    fn browsed(&self) -> Option<Option<PathBuf>>;
 
     /// What makes support-free nodes so in the view. By default they are shown as drawn.
     fn bake(&self) -> Option<Bake> {
@@ -61,5 +92,5 @@ pub trait Desk {
     }
 
     /// The scenes of the gallery: their titles and their texts.
-    fn examples(&self) -> &[(&'static str, &'static str)];
+    fn examples(&self) -> &'static [(&'static str, &'static str)];
 }

@@ -25,11 +25,11 @@ pub const BINDINGS: [Binding; 30] = [
     with(Modifiers::COMMAND, Key::Y, "do again what was undone", Modeler::redo),
     with(Modifiers::COMMAND, Key::Z, "undo the last stroke or step", Modeler::undo),
     with(Modifiers::COMMAND, Key::N, "new page", Dialog::begin_new),
-    with(Modifiers::COMMAND, Key::O, "open", |m| m.dialog = Some(Dialog::open())),
+    with(Modifiers::COMMAND, Key::O, "open", Dialog::begin_open),
     with(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S, "save under another name", |m| {
-        Dialog::begin_save(m, true);
+        Dialog::begin_save(m, true, None);
     }),
-    with(Modifiers::COMMAND, Key::S, "save", |m| Dialog::begin_save(m, false)),
+    with(Modifiers::COMMAND, Key::S, "save", |m| Dialog::begin_save(m, false, None)),
     with(Modifiers::COMMAND, Key::E, "export for printing", Dialog::begin_export),
     with(Modifiers::COMMAND, Key::D, "duplicate what is selected", Modeler::duplicate_selected),
     with(Modifiers::NONE, Key::Delete, "remove what is selected", Modeler::remove_selected),

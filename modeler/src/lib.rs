@@ -5,13 +5,14 @@
 //!
 //! The way of the data, in each frame: what the background threads have made is taken in; keys, panels and the hand
 //! in the view do things to the [`workbench::Workbench`], whose every step is in the [`journal`] first; what has
-//! changed is asked of the background threads, [`solid`] for the surface and [`expecting`] for the sketch. The frame
-//! itself waits for neither.
+//! changed is asked of the background threads, [`solid`] for the surface and [`expecting`] for the sketch; files are read
+//! and written in an [`errand`]. The frame itself waits for none of them.
 
 mod brought;
 pub mod camera;
 pub mod desk;
 pub mod dialog;
+pub mod errand;
 pub mod expecting;
 pub mod form;
 mod ground;
@@ -35,4 +36,4 @@ pub mod trace;
 mod view;
 pub mod workbench;
 
-pub use modeler::Modeler;
+pub use modeler::{Fetched, How, Modeler, Newcomer};

@@ -1,6 +1,8 @@
 //! Meshes that a scene names by their way from the scene's folder, when the scene goes to another folder.
 
-use blobtree::{Command, ImportedMesh, MeshReference, NewShape, NodePath, NodeRef, Primitive, Shape};
+use blobtree::{
+    Command, Document, ImportedMesh, MeshReference, NewShape, NodePath, NodeRef, Primitive, Scene, Shape,
+};
 use std::io;
 use std::path::Path;
 
@@ -23,6 +25,26 @@ pub fn renamed(root: &NodeRef, from: &Path, to: &Path) -> io::Result<Vec<Command
         waiting.extend(children.map(|(index, child)| (child.clone(), path.child(index))));
     }
     Ok(commands)
+}
+
+/// A scene that names its meshes from one folder, naming them from another.
+///
+/// Errors: a mesh or a folder that is not there.
+pub fn moved(scene: &Scene, from: &Path, to: &Path) -> io::Result<Scene> {
+    let commands = renamed(&scene.root, from, to)?;
+    if commands.is_empty() {
+        return Ok(scene.clone());
+    }
+    let mut document = Document::new(scene.clone()).map_err(io::Error::other)?;
+    for command in commands {
+        document.apply(command).map_err(io::Error::other)?;
+    }
+    Ok(document.scene().clone())
+}
+
+/// Whether there is a mesh in a tree.
+pub fn any(root: &NodeRef) -> bool {
+    matches!(&root.shape, Shape::Primitive(Primitive::Mesh(_))) || root.children().iter().any(any)
 }
 
 #[cfg(test)]

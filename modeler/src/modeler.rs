@@ -1,11 +1,15 @@
 //! All that the modeler is, and how its parts hear of each other.
 
+mod add;
 mod files;
+
+pub use files::{Fetched, How, Newcomer};
 
 use crate::brought::newest;
 use crate::camera::{Camera, Side};
 use crate::desk::Desk;
 use crate::dialog::Dialog;
+use crate::errand::Errands;
 use crate::expecting::{Asked, Thinker, Thought};
 use crate::form::Form;
 use crate::lens::Lens;
@@ -49,7 +53,11 @@ pub struct Modeler {
     /// then.
     selected_by_hand: bool,
     /// Who opens and writes files.
-    pub desk: Box<dyn Desk>,
+    pub desk: Arc<dyn Desk>,
+    /// What is being read and written.
+    pub errands: Errands,
+    /// How many documents have been on the table: those that errands began with may be gone.
+    documents: u64,
     /// Where the user's waits are written down, if somewhere.
     pub trace: Option<Trace>,
     /// When the present frame began.
@@ -104,7 +112,9 @@ impl Modeler {
             lesson: None,
             lens: None,
             selected_by_hand: false,
-            desk,
+            desk: desk.into(),
+            errands: Errands::new(wake.clone()),
+            documents: 0,
             trace: None,
             now: Instant::now(),
             asking: Asking::Other,
@@ -132,12 +142,12 @@ impl Modeler {
         panels::show(self, ui);
         view::show(self, ui, stage);
         if let Some(file) = self.waiting.take() {
-            self.open(&file);
+            self.fetch(file, How::Instead);
         }
-        let dropped = ui.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(file) = dropped {
-            self.begin_open(file);
-        }
+        let dropped = |input: &egui::InputState| {
+            input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect()
+        };
+        self.dropped(ui.input(dropped));
         crate::dialog::show(self, ui);
         self.notices.show(ui);
         self.ask();
@@ -172,7 +182,7 @@ impl Modeler {
         let sketched = self.pad.sketch().is_empty() || self.pad.expectations.as_ref().is_some_and(is_newest);
         let asked = self.asked.as_ref().is_some_and(|root| NodeRef::ptr_eq(root, &self.bench.shown().root));
         let seen = self.lens.as_ref().is_none_or(Lens::is_at_rest);
-        sketched && asked && seen && self.solids.is_done(self.solid.as_deref())
+        sketched && asked && seen && self.errands.is_empty() && self.solids.is_done(self.solid.as_deref())
     }
 
     /// The knobs in the view: what they say, and where they are, in points of the view.
@@ -182,6 +192,7 @@ impl Modeler {
 
     /// Takes in what the background threads have made.
     fn hear(&mut self) {
+        self.receive();
         if let Some(solid) = self.solids.ready() {
             if !solid.is_fine {
                 let wait = match solid.asking {

@@ -1,5 +1,6 @@
 //! How the user likes to work.
 
+use crate::desk::ExportOptions;
 use crate::stage::Look;
 
 /// What the pen does on the model.
@@ -110,6 +111,8 @@ pub struct Settings {
     pub room: [f32; 3],
     /// Whether the tree is on the right and the parameters are on the left.
     pub left_handed: bool,
+    /// How meshes are written.
+    pub export: ExportOptions,
 }
 
 impl Default for Settings {
@@ -123,6 +126,7 @@ impl Default for Settings {
             shows_ground: true,
             room: [220.0, 220.0, 250.0],
             left_handed: false,
+            export: ExportOptions::default(),
         }
     }
 }

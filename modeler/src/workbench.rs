@@ -3,8 +3,7 @@
 use crate::journal::{Journal, JournalError, Recovered};
 use blobtree::build::union;
 use blobtree::{
-    Change, Command, CommandError, Document, JournalEntry, Node, NodePath, NodeRef, SaveError, Scene,
-    SceneError, Shape,
+    Change, Command, CommandError, Document, JournalEntry, Node, NodePath, NodeRef, Scene, SceneError, Shape,
 };
 use std::path::{Path, PathBuf};
 
@@ -195,14 +194,16 @@ impl Workbench {
         Ok(())
     }
 
-    /// Saves the scene to a file, which is the user's from now on.
-    ///
-    /// Errors: as [`Document::save`]; then nothing has changed.
-    pub fn save(&mut self, file: PathBuf) -> Result<(), SaveError> {
-        self.document.save(&file)?;
-        self.saved = self.scene().clone();
+    /// The scene, or an earlier one if it is no longer `as_it_is`, was saved to this file, which is the user's from now
+    /// on.
+    pub fn saved_as(&mut self, file: PathBuf, as_it_is: bool) {
+        self.saved = if as_it_is { self.scene().clone() } else { Scene::new(empty()) };
         self.file = Some(file);
-        Ok(())
+    }
+
+    /// The scene is in no file, but this is the one that it may be saved as.
+    pub fn will_be_in(&mut self, file: PathBuf) {
+        self.file = Some(file);
     }
 
     /// The scene is in no file, whatever [`Self::file`] says it may be saved as.

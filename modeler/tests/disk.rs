@@ -36,7 +36,7 @@ fn cramped() {
     let mut screen = screen(Some(folder.join("sessions")));
     let file = folder.join("mine.trullo");
     screen.state_mut().act(ball(0));
-    assert!(screen.state_mut().save_to(file.clone()), "one ball fits");
+    assert!(save(&mut screen, &file), "one ball fits");
     let mine = fs::read(&file).expect("it is there");
     let mut number = 1;
     while !told(&screen, "can no longer be protected against a crash") {
@@ -56,7 +56,7 @@ fn cramped() {
     assert_eq!(balls(&screen), number - 1);
     assert!(!screen.state().bench.is_protected());
     // The user's file is the one before, whole.
-    while screen.state_mut().save_to(file.clone()) {
+    while save(&mut screen, &file) {
         screen.state_mut().act(ball(number));
         number += 1;
         assert!(number < 1000, "everything can be saved");
@@ -98,7 +98,7 @@ fn folders_that_cannot_be_written_are_told_and_the_work_goes_on() {
     assert!(told(&screen, "can no longer be protected"));
     screen.state_mut().act(ball(0));
     for nowhere in [file.join("mine.trullo"), Path::new("/proc/mine.trullo").into()] {
-        assert!(!screen.state_mut().save_to(nowhere.clone()));
+        assert!(!save(&mut screen, &nowhere));
         let name = nowhere.display().to_string();
         assert!(told(&screen, &name), "{:?}", screen.state().notices.texts().collect::<Vec<_>>());
     }

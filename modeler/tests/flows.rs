@@ -433,13 +433,12 @@ fn saving_gives_a_file_that_opens_as_the_same_scene() {
     draw(&mut screen, circle(at, 100.0));
     press(&mut screen, "Inflate");
     assert!(screen.state().bench.is_unsaved());
-    assert!(screen.state_mut().save_to(file.clone()));
-    settle(&mut screen);
+    assert!(save(&mut screen, &file));
     assert!(!screen.state().bench.is_unsaved());
     let scene = screen.state().bench.scene().clone();
     screen.state_mut().put(Workbench::empty_page(), None);
     settle(&mut screen);
-    screen.state_mut().begin_open(file);
+    screen.state_mut().fetch(file, modeler::How::Instead);
     settle(&mut screen);
     assert_eq!(screen.state().bench.scene(), &scene);
 }

@@ -63,7 +63,7 @@ fn editor() {
             2 if step % 3 == 0 => sketch(&mut screen, &mut rng, &mut tell),
             3 => {
                 // Saving must neither change nor lose anything.
-                assert!(screen.state_mut().save_to(folder.join("saved.trullo")));
+                assert!(save(&mut screen, folder.join("saved.trullo")));
                 tell("saved", &state_of(&screen));
             }
             _ => {
@@ -146,7 +146,7 @@ fn start(folder: &Path, seed: u64) -> Child {
 fn brought_back(folder: &Path, seed: u64) -> Option<String> {
     let mut left = LeftBehind::all(&folder.join("sessions"));
     assert!(left.len() <= 1, "seed {seed}: {} sessions", left.len());
-    let mut desk = TestDesk;
+    let desk = TestDesk;
     let recovered = left.pop()?.recover(&mut *desk.sources(None));
     let recovered = recovered.unwrap_or_else(|e| panic!("seed {seed}: {e}"));
     assert_eq!(recovered.lost, None, "seed {seed}");
@@ -187,7 +187,7 @@ fn a_modeler_killed_at_any_moment_comes_back_as_it_was_last_shown() {
             back => panic!("seed {seed}: {back} came back, {shown} was shown, {next:?} was next"),
         }
         if let Ok(bytes) = fs::read(folder.path().join("saved.trullo")) {
-            let mut desk = TestDesk;
+            let desk = TestDesk;
             let saved = Scene::from_bytes(&bytes, &mut *desk.sources(None));
             saved.unwrap_or_else(|e| panic!("seed {seed}: the user's file: {e}"));
         }

@@ -10,13 +10,14 @@ use crate::progress::Meter;
 use crate::timings::Timings;
 use blobtree::build::{Build as _, primitive, union};
 use blobtree::{Primitive, Scene, SceneSources};
-use modeler::desk::{Bake, Desk, Opened, Purpose};
-use polygonizer::Cancel;
+use mesh::io::Format;
+use modeler::desk::{Bake, Desk, ExportOptions, Opened, Purpose};
+use modeler::errand::{Undone, Watch};
 use printable::Rebaker;
 use sketch::stroke::{self, DoodleChoice, Sketch};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The scenes of the gallery.
 const EXAMPLES: [(&str, &str); 8] = [
@@ -36,58 +37,97 @@ const FALLOFF: f32 = 5.0;
 /// Files on this computer.
 #[derive(Debug, Default)]
 pub struct Files {
-    browsing: Option<Receiver<Option<PathBuf>>>,
+    browsing: Mutex<Option<Receiver<Option<PathBuf>>>>,
 }
 
-/// Does work that a verb does, without telling how far it is.
-fn work<T>(work: impl FnOnce(&mut Job) -> Result<T, Failure>) -> Result<T, String> {
-    let (mut timings, meter, cancel) = (Timings::default(), Meter::new(false), Cancel::new());
-    work(&mut Job::new(&mut timings, &meter, &cancel)).map_err(|failure| failure.to_string())
+/// Does work that a verb does, and tells `watch` how far it is.
+fn work<T>(watch: &Watch, work: impl FnOnce(&mut Job) -> Result<T, Failure>) -> Result<T, Undone> {
+    let (mut timings, cancel, told) = (Timings::default(), watch.cancel.clone(), watch.clone());
+    let meter = Meter::telling(move |stage, share| told.report(in_words(stage), share));
+    work(&mut Job::new(&mut timings, &meter, &cancel)).map_err(undone)
+}
+
+fn undone(failure: Failure) -> Undone {
+    match failure {
+        Failure::Interrupted => Undone::Stopped,
+        Failure::Input(what) => Undone::Failed(what),
+    }
+}
+
+/// What a stage does, for somebody who waits for it.
+fn in_words(stage: &str) -> &str {
+    match stage {
+        "read" => "reading",
+        "compile" | "size" => "measuring",
+        "constrain" => "making it support-free",
+        "mesh" => "making the mesh",
+        "simplify" => "leaving out triangles",
+        "verify" => "checking it",
+        "encode" | "write" => "writing",
+        other => other,
+    }
 }
 
 impl Desk for Files {
-    fn open(&mut self, path: &Path) -> Result<Opened, String> {
+    fn open(&self, path: &Path, watch: &Watch) -> Result<Opened, Undone> {
         let is_drawing = path.extension().and_then(|e| e.to_str()).is_some_and(|extension| {
             ["svg", "json", "ndjson"].iter().any(|drawing| extension.eq_ignore_ascii_case(drawing))
         });
         if is_drawing {
-            return drawing(path).map(Opened::Drawing).map_err(|failure| failure.to_string());
+            return drawing(path).map(Opened::Drawing).map_err(undone);
         }
-        let mut report = Report::default();
-        let input = work(|job| input::open(path, None, Prefer::Scene, job, &mut report))?;
-        let loaded = match input {
-            Input::Scene(scene) => return Ok(Opened::Scene(scene, report.notices)),
-            Input::Mesh(loaded) => loaded,
-        };
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let mesh = input::imported_mesh(path, &loaded.mesh, Some(folder), FALLOFF);
-        let mesh = mesh.map_err(|failure| failure.to_string())?;
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let scene = Scene::new(union([primitive(Primitive::Mesh(mesh)).named(&*name)]));
-        Ok(Opened::Mesh(scene, free_name(folder, &name), report.notices))
+        work(watch, |job| {
+            let mut report = Report::default();
+            let loaded = match input::open(path, None, Prefer::Scene, job, &mut report)? {
+                Input::Scene(scene) => return Ok(Opened::Scene(scene, report.notices)),
+                Input::Mesh(loaded) => loaded,
+            };
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let mesh =
+                job.stage("measure", |_| input::imported_mesh(path, &loaded.mesh, Some(folder), FALLOFF))?;
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let scene = Scene::new(union([primitive(Primitive::Mesh(mesh)).named(name)]));
+            Ok(Opened::Mesh(scene, report.notices))
+        })
     }
 
-    fn sources<'a>(&'a mut self, file: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
+    fn sources<'a>(&'a self, file: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
         Box::new(Beside(file.unwrap_or(Path::new(""))))
     }
 
-    fn export(&mut self, scene: &Scene, path: &Path, cell_mm: Option<f32>) -> Result<String, String> {
-        let resolution = ResolutionArgs { cell: cell_mm.map(f64::from), cells: None };
-        work(|job| {
-            meshing::format_of_output(path)?;
+    fn export(
+        &self,
+        scene: &Scene,
+        path: &Path,
+        options: &ExportOptions,
+        watch: &Watch,
+    ) -> Result<String, Undone> {
+        let cell = options.cell_mm.map(f64::from);
+        let resolution = ResolutionArgs { cell, cells: None };
+        work(watch, |job| {
+            let format = meshing::format_of_output(path)?;
             output::check_writable(path)?;
-            let meshed = meshing::mesh_scene(path, scene, &resolution, ConstraintArgs::default(), job)?;
-            let attachments = input::attachments(path, scene)?;
-            meshing::write_mesh(path, path, &meshed.mesh, &attachments, job)?;
+            let mut meshed = meshing::mesh_scene(path, scene, &resolution, ConstraintArgs::default(), job)?;
+            if options.tolerance_mm > 0.0 {
+                let tolerance = f64::from(options.tolerance_mm);
+                meshed.mesh = meshing::simplified(&meshed.mesh, tolerance, job)?;
+            }
+            let mut attachments = input::attachments(path, scene)?;
+            if !options.carries_scene {
+                attachments.scene = None;
+            }
+            let as_text = options.as_text && format == Format::Stl;
+            let format = if as_text { Format::StlAscii } else { format };
+            meshing::write_mesh_as(path, path, &meshed.mesh, format, &attachments, job)?;
             let triangles = output::counted(meshed.mesh.triangles.len(), "triangle");
             Ok(format!("{}: {triangles}, cells of {} mm", path.display(), output::short(meshed.cell_mm)))
         })
     }
 
-    fn browse(&mut self, purpose: Purpose, wake: Arc<dyn Fn() + Send + Sync>) -> bool {
+    fn browse(&self, purpose: Purpose, wake: Arc<dyn Fn() + Send + Sync>) -> bool {
         let (sender, receiver) = mpsc::channel();
         let dialog = match purpose {
-            Purpose::Open => rfd::FileDialog::new().add_filter(
+            Purpose::Open | Purpose::Add => rfd::FileDialog::new().add_filter(
                 "Scenes, meshes and drawings",
                 &["trullo", "3mf", "stl", "obj", "ply", "svg", "json", "ndjson"],
             ),
@@ -98,9 +138,10 @@ impl Desk for Files {
                 .add_filter("Meshes", &["3mf", "stl", "obj", "ply"])
                 .set_file_name("model.3mf"),
         };
-        self.browsing = Some(receiver);
+        *self.browsing.lock().unwrap_or_else(PoisonError::into_inner) = Some(receiver);
         let browse = move || {
-            let file = if purpose == Purpose::Open { dialog.pick_file() } else { dialog.save_file() };
+            let picks = matches!(purpose, Purpose::Open | Purpose::Add);
+            let file = if picks { dialog.pick_file() } else { dialog.save_file() };
             // Nobody waits any more if the modeler has ended.
             let _ = sender.send(file);
             wake();
@@ -108,9 +149,10 @@ impl Desk for Files {
         std::thread::Builder::new().name("files".into()).spawn(browse).is_ok()
     }
 
-    fn browsed(&mut self) -> Option<Option<PathBuf>> {
-        let answer = self.browsing.as_ref()?.try_recv().ok()?;
-        self.browsing = None;
+    fn browsed(&self) -> Option<Option<PathBuf>> {
+        let mut browsing = self.browsing.lock().unwrap_or_else(PoisonError::into_inner);
+        let answer = browsing.as_ref()?.try_recv().ok()?;
+        *browsing = None;
         Some(answer)
     }
 
@@ -118,16 +160,9 @@ impl Desk for Files {
         Some(Box::new(|root, bakes, cancel| bakes.bake(root, &Rebaker::with_cancel(cancel)).is_ok()))
     }
 
-    fn examples(&self) -> &[(&'static str, &'static str)] {
+    fn examples(&self) -> &'static [(&'static str, &'static str)] {
         &EXAMPLES
     }
-}
-
-/// The scene's file beside a mesh: none that is there already.
-fn free_name(folder: &Path, name: &str) -> PathBuf {
-    let numbered = (2..).map(|number| format!("{name} {number}.trullo"));
-    let mut names = std::iter::once(format!("{name}.trullo")).chain(numbered).map(|name| folder.join(name));
-    names.find(|file| !file.exists()).unwrap_or_else(|| folder.join(name))
 }
 
 /// The strokes of a drawing's file.

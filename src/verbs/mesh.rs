@@ -7,7 +7,6 @@ use crate::meshing::{self, Meshed};
 use crate::output::{Report, check_writable, counted, number, vector};
 use crate::{certificate, constraint, input, output};
 use mesh::io::Format;
-use mesh::simplify;
 use serde_json::json;
 use std::path::Path;
 
@@ -24,9 +23,7 @@ pub fn run(args: &MeshArgs, job: &mut Job) -> Result<Report, Failure> {
     let scene = input::open_scene(&args.scene, job)?;
     let mut meshed = meshing::mesh_scene(&args.scene, &scene, &args.resolution, args.constraint, job)?;
     if let Some(tolerance) = args.simplify {
-        meshed.mesh = job.stage("simplify", |watch| {
-            simplify(&meshed.mesh, tolerance, &|| watch.cancel.is_cancelled()).ok_or(Failure::Interrupted)
-        })?;
+        meshed.mesh = meshing::simplified(&meshed.mesh, tolerance, job)?;
     }
     let mut attachments = input::attachments(&args.scene, &scene)?;
     let mut certified = Report::default();

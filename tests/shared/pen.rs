@@ -7,7 +7,8 @@ use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, RawInput, Rect, 
 use glam::{Vec2, Vec3};
 use modeler::Modeler;
 use modeler::camera::Camera;
-use modeler::desk::{Desk, Opened, Purpose};
+use modeler::desk::{Desk, ExportOptions, Opened, Purpose};
+use modeler::errand::{Undone, Watch};
 use modeler::stage::NoStage;
 use sketch::stroke::{DoodleChoice, FileFormat, Sketch, Stroke, read};
 use std::path::{Path, PathBuf};
@@ -37,27 +38,27 @@ const SPEED: f32 = 150.0;
 struct NoDesk;
 
 impl Desk for NoDesk {
-    fn open(&mut self, _: &Path) -> Result<Opened, String> {
-        Err("no files here".into())
+    fn open(&self, _: &Path, _: &Watch) -> Result<Opened, Undone> {
+        Err(Undone::Failed("no files here".into()))
     }
 
-    fn sources<'a>(&'a mut self, _: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
+    fn sources<'a>(&'a self, _: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
         Box::new(DrawingsBy(sketch::solve))
     }
 
-    fn export(&mut self, _: &Scene, _: &Path, _: Option<f32>) -> Result<String, String> {
-        Err("no files here".into())
+    fn export(&self, _: &Scene, _: &Path, _: &ExportOptions, _: &Watch) -> Result<String, Undone> {
+        Err(Undone::Failed("no files here".into()))
     }
 
-    fn browse(&mut self, _: Purpose, _: Arc<dyn Fn() + Send + Sync>) -> bool {
+    fn browse(&self, _: Purpose, _: Arc<dyn Fn() + Send + Sync>) -> bool {
         false
     }
 
-    fn browsed(&mut self) -> Option<Option<PathBuf>> {
+    fn browsed(&self) -> Option<Option<PathBuf>> {
         None
     }
 
-    fn examples(&self) -> &[(&'static str, &'static str)] {
+    fn examples(&self) -> &'static [(&'static str, &'static str)] {
         &[]
     }
 }

@@ -61,10 +61,11 @@ fn files(modeler: &mut Modeler, ui: &mut Ui) {
     };
     item(ui, "New page", "Ctrl+N", Dialog::begin_new);
     item(ui, "Examples…", "", |m| m.dialog = Some(Dialog::Examples));
-    item(ui, "Open…", "Ctrl+O", |m| m.dialog = Some(Dialog::open()));
+    item(ui, "Open…", "Ctrl+O", Dialog::begin_open);
+    item(ui, "Add…", "", Dialog::begin_add);
     ui.separator();
-    item(ui, "Save", "Ctrl+S", |m| Dialog::begin_save(m, false));
-    item(ui, "Save as…", "Ctrl+Shift+S", |m| Dialog::begin_save(m, true));
+    item(ui, "Save", "Ctrl+S", |m| Dialog::begin_save(m, false, None));
+    item(ui, "Save as…", "Ctrl+Shift+S", |m| Dialog::begin_save(m, true, None));
     item(ui, "Export…", "Ctrl+E", Dialog::begin_export);
     ui.separator();
     item(ui, "Quit", "", |m| Dialog::begin(m, Then::Quit));

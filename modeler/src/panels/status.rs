@@ -1,7 +1,15 @@
 //! The line below: what is on the table, and what is going on.
 
+use crate::errand::Progress;
 use crate::modeler::Modeler;
-use egui::{Layout, Ui};
+use egui::{Layout, ProgressBar, Ui};
+use std::time::Duration;
+
+/// How often progress is shown anew.
+const TICK: Duration = Duration::from_millis(100);
+
+/// The width of a bar, points.
+const BAR: f32 = 110.0;
 
 /// Shows it.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
@@ -15,6 +23,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         if modeler.solid().is_some_and(|solid| solid.unconstrained > 0) {
             ui.weak("support-free parts are still shown as drawn");
         }
+        errands(modeler, ui);
         ui.with_layout(Layout::right_to_left(egui::Align::Center), |ui| {
             let Some(solid) = modeler.solid() else { return };
             let size = solid.bounds.size();
@@ -23,9 +32,34 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
                 let triangles = solid.corners.len() / 3;
                 ui.weak(format!("{triangles} triangles in {:.0} ms", solid.took.as_secs_f64() * 1e3));
             }
-            if !modeler.is_at_rest() {
+            if modeler.errands.is_empty() && !modeler.is_at_rest() {
                 ui.spinner();
             }
         });
     });
+}
+
+/// What is being read and written, how far that is, and how it is stopped.
+fn errands(modeler: &mut Modeler, ui: &mut Ui) {
+    let mut stopped = None;
+    for (i, (title, Progress { step, share })) in modeler.errands.told().enumerate() {
+        ui.separator();
+        let text = if step.is_empty() { format!("{title}…") } else { format!("{title}: {step}…") };
+        let label = ui.label(text);
+        match share {
+            Some(share) => {
+                ui.add(ProgressBar::new(share).desired_width(BAR).show_percentage()).labelled_by(label.id);
+            }
+            None => {
+                ui.spinner();
+            }
+        }
+        if ui.small_button("Stop").clicked() {
+            stopped = Some(i);
+        }
+        ui.ctx().request_repaint_after(TICK);
+    }
+    if let Some(stopped) = stopped {
+        modeler.errands.stop(stopped);
+    }
 }

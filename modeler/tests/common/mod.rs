@@ -8,7 +8,8 @@ use egui::{Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use modeler::Modeler;
-use modeler::desk::{Desk, Opened, Purpose};
+use modeler::desk::{Desk, ExportOptions, Opened, Purpose};
+use modeler::errand::{Undone, Watch};
 use modeler::stage::NoStage;
 use sketch::stroke::{DoodleChoice, FileFormat, Sketch, read};
 use std::path::{Path, PathBuf};
@@ -20,34 +21,36 @@ use std::time::{Duration, Instant};
 pub struct TestDesk;
 
 impl Desk for TestDesk {
-    fn open(&mut self, path: &Path) -> Result<Opened, String> {
-        let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    fn open(&self, path: &Path, _: &Watch) -> Result<Opened, Undone> {
+        let failed = |why: String| Undone::Failed(format!("{}: {why}", path.display()));
+        let bytes = std::fs::read(path).map_err(|e| failed(e.to_string()))?;
         if path.extension().is_some_and(|extension| extension == "json") {
-            let strokes =
-                read(&bytes, FileFormat::Strokes, &DoodleChoice::default()).map_err(|e| e.to_string())?;
+            let strokes = read(&bytes, FileFormat::Strokes, &DoodleChoice::default())
+                .map_err(|e| failed(e.to_string()))?;
             return Ok(Opened::Drawing(Sketch::from_strokes(&strokes)));
         }
-        let scene = Scene::from_bytes(&bytes, &mut DrawingsBy(sketch::solve)).map_err(|e| e.to_string())?;
+        let scene = Scene::from_bytes(&bytes, &mut DrawingsBy(sketch::solve));
+        let scene = scene.map_err(|e| failed(e.to_string()))?;
         Ok(Opened::Scene(scene, Vec::new()))
     }
 
-    fn sources<'a>(&'a mut self, _: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
+    fn sources<'a>(&'a self, _: Option<&'a Path>) -> Box<dyn SceneSources + 'a> {
         Box::new(DrawingsBy(sketch::solve))
     }
 
-    fn export(&mut self, _: &Scene, path: &Path, _: Option<f32>) -> Result<String, String> {
+    fn export(&self, _: &Scene, path: &Path, _: &ExportOptions, _: &Watch) -> Result<String, Undone> {
         Ok(format!("Exported {}.", path.display()))
     }
 
-    fn browse(&mut self, _: Purpose, _: Arc<dyn Fn() + Send + Sync>) -> bool {
+    fn browse(&self, _: Purpose, _: Arc<dyn Fn() + Send + Sync>) -> bool {
         false
     }
 
-    fn browsed(&mut self) -> Option<Option<PathBuf>> {
+    fn browsed(&self) -> Option<Option<PathBuf>> {
         None
     }
 
-    fn examples(&self) -> &[(&'static str, &'static str)] {
+    fn examples(&self) -> &'static [(&'static str, &'static str)] {
         const SNOWMAN: &str = include_str!("../../../examples/snowman.trullo");
         &[("Snowman", SNOWMAN)]
     }
@@ -63,7 +66,16 @@ pub fn screen(sessions: Option<PathBuf>) -> Screen {
 
 /// One that begins as `prepare` says.
 pub fn screen_with(sessions: Option<PathBuf>, prepare: impl FnOnce(&mut Modeler)) -> Screen {
-    let mut modeler = Modeler::new(Box::new(TestDesk), sessions, Arc::new(|| ())).expect("threads");
+    screen_at(TestDesk, sessions, prepare)
+}
+
+/// One with these files.
+pub fn screen_at(
+    desk: impl Desk + 'static,
+    sessions: Option<PathBuf>,
+    prepare: impl FnOnce(&mut Modeler),
+) -> Screen {
+    let mut modeler = Modeler::new(Box::new(desk), sessions, Arc::new(|| ())).expect("threads");
     prepare(&mut modeler);
     let builder = Harness::builder().with_size([1280.0, 800.0]);
     let mut screen =
@@ -82,6 +94,14 @@ pub fn settle(screen: &mut Screen) {
         screen.step();
     }
     screen.run_steps(2);
+}
+
+/// Saves to a file; whether that could be done.
+pub fn save(screen: &mut Screen, file: impl Into<PathBuf>) -> bool {
+    let file = file.into();
+    screen.state_mut().save_to(file.clone(), None);
+    settle(screen);
+    screen.state().bench.file() == Some(&*file) && !screen.state().bench.is_unsaved()
 }
 
 /// The middle of the model view.
