@@ -68,7 +68,7 @@ fn main() -> ExitCode {
 
 /// Opens the window.
 fn model(file: Option<&Path>, trace: Option<&Path>) -> ExitCode {
-    match app::run(file, app::sessions(), trace) {
+    match app::run(file, app::state(), trace) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             output::show_failure(&failure.to_string(), false);

@@ -5,6 +5,7 @@ use blobtree::{BakeStore, NodeRef, Scene, SceneSources};
 use polygonizer::Cancel;
 use serde::{Deserialize, Serialize};
 use sketch::stroke::Sketch;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -51,6 +52,14 @@ pub struct ExportOptions {
     pub carries_scene: bool,
 }
 
+impl ExportOptions {
+    /// How wide cells may be, mm.
+    pub const CELLS: RangeInclusive<f32> = 0.01..=10.0;
+
+    /// How far a surface may move, mm.
+    pub const TOLERANCES: RangeInclusive<f32> = 0.0..=1.0;
+}
+
 impl Default for ExportOptions {
     fn default() -> Self {
         Self { cell_mm: None, tolerance_mm: 0.0, as_text: false, carries_scene: true }
@@ -79,9 +88,9 @@ pub trait Desk: Send + Sync {
         watch: &Watch,
     ) -> Result<String, Undone>;
 
-    /// Lets the user choose a file in the system's own window, beside the running modeler; whether there is such a
-    /// window.
-    fn browse(&self, purpose: Purpose, wake: Arc<dyn Fn() + Send + Sync>) -> bool;
+    /// Lets the user choose a file in the system's own window, which begins in a folder, beside the running modeler;
+    /// whether there is such a window.
+    fn browse(&self, purpose: Purpose, folder: Option<&Path>, wake: Arc<dyn Fn() + Send + Sync>) -> bool;
 
     /// The file that was chosen since the last look; `Some(None)` if none was.
     fn browsed(&self) -> Option<Option<PathBuf>>;

@@ -106,7 +106,7 @@ pub fn show(modeler: &mut Modeler, ui: &Ui, view: Rect) {
     let area = Area::new(Id::unique("lesson")).order(Order::Middle).pivot(pivot).fixed_pos(corner);
     area.show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-            ui.set_max_width(250.0);
+            ui.set_max_width(320.0);
             match modeler.lesson {
                 Some(lesson) => card(modeler, ui, lesson),
                 None => offer(modeler, ui),
@@ -139,4 +139,5 @@ fn offer(modeler: &mut Modeler, ui: &mut Ui) {
             modeler.dialog = Some(Dialog::Examples);
         }
     });
+    crate::panels::recent::welcome(modeler, ui);
 }

@@ -17,6 +17,7 @@ pub mod expecting;
 pub mod form;
 mod ground;
 pub mod journal;
+pub mod kept;
 pub mod keys;
 pub mod lens;
 pub mod lesson;

@@ -12,6 +12,7 @@ use crate::dialog::Dialog;
 use crate::errand::Errands;
 use crate::expecting::{Asked, Thinker, Thought};
 use crate::form::Form;
+use crate::kept::Kept;
 use crate::lens::Lens;
 use crate::lesson::Lesson;
 use crate::node_box::NodeBox;
@@ -19,7 +20,7 @@ use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
 use crate::panels;
 use crate::placing::{self, Motion};
-use crate::settings::Settings;
+use crate::settings::{Settings, Theme};
 use crate::solid::{Asking, Solid, SolidMaker};
 use crate::stage::Stage;
 use crate::trace::{Trace, Wait};
@@ -27,7 +28,7 @@ use crate::view::{self, ViewState};
 use crate::workbench::{EditError, Workbench};
 use blobtree::{Aabb, Command, JournalEntry, NodePath, NodeRef};
 use glam::Vec3;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -41,6 +42,10 @@ pub struct Modeler {
     pub pad: Pad,
     /// How the user likes to work.
     pub settings: Settings,
+    /// What is kept from one start to the next; nothing in tests that do not want it.
+    pub kept: Kept,
+    /// The theme and the scale that everything has.
+    dressed: (Theme, f32),
     /// What the user is told.
     pub notices: Notices,
     /// What is asked of the user.
@@ -107,6 +112,8 @@ impl Modeler {
             camera: Camera::default(),
             pad: Pad::default(),
             settings: Settings::default(),
+            kept: Kept::default(),
+            dressed: (Theme::System, 1.0),
             notices,
             dialog: None,
             lesson: None,
@@ -136,6 +143,7 @@ impl Modeler {
     /// Shows everything, and does what the user wants.
     pub fn ui(&mut self, ui: &mut egui::Ui, stage: &mut dyn Stage) {
         self.begin_frame();
+        self.dress(ui.ctx());
         self.hear();
         self.measure();
         crate::keys::heed(self, ui);
@@ -151,9 +159,31 @@ impl Modeler {
         crate::dialog::show(self, ui);
         self.notices.show(ui);
         self.ask();
+        self.kept.follow(&self.settings);
         let computing = !self.is_at_rest();
         if let Some(trace) = &mut self.trace {
             trace.frame(self.now, computing);
+        }
+    }
+
+    /// Keeps settings and files in a folder from now on, and takes up those that are there.
+    pub fn keep_in(&mut self, folder: &Path) {
+        match Kept::open(folder, self.wake.clone()) {
+            Ok((kept, settings)) => (self.kept, self.settings) = (kept, settings),
+            Err(error) => self.notices.warn(format!("Settings cannot be kept: {error}")),
+        }
+    }
+
+    /// Has everything look as the settings say. Keys may have changed the size; a hand that is changing it goes first.
+    fn dress(&mut self, ctx: &egui::Context) {
+        let scale = ctx.zoom_factor();
+        if (scale - self.dressed.1).abs() > 1e-3 {
+            (self.settings.scale, self.dressed.1) = (scale, scale);
+        }
+        let wanted = (self.settings.theme, self.settings.scale);
+        if wanted != self.dressed && !ctx.egui_is_using_pointer() {
+            self.settings.dress(ctx);
+            self.dressed = wanted;
         }
     }
 

@@ -2,6 +2,9 @@
 
 use crate::desk::ExportOptions;
 use crate::stage::Look;
+use egui::{Context, ThemePreference};
+use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// What the pen does on the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,7 +56,7 @@ impl Tool {
 }
 
 /// Which buttons turn and move the view.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Habit {
     /// As in slicers: the right button turns, the middle one moves.
     #[default]
@@ -92,10 +95,52 @@ impl Habit {
     }
 }
 
-/// All that is not part of the document.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Theme {
+    /// As the system has it.
+    #[default]
+    System,
+    /// Dark on light.
+    Light,
+    /// Light on dark.
+    Dark,
+}
+
+impl Theme {
+    /// All, in the order of the menu.
+    pub const ALL: [Self; 3] = [Self::System, Self::Light, Self::Dark];
+
+    /// The name in the menu.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::System => "As the system",
+            Self::Light => "Light",
+            Self::Dark => "Dark",
+        }
+    }
+
+    fn preference(self) -> ThemePreference {
+        match self {
+            Self::System => ThemePreference::System,
+            Self::Light => ThemePreference::Light,
+            Self::Dark => ThemePreference::Dark,
+        }
+    }
+}
+
+/// How large everything may be, times its usual size.
+pub const SCALES: RangeInclusive<f32> = 0.6..=2.5;
+
+/// What may be tinted, degrees from the vertical.
+pub const OVERHANGS: RangeInclusive<f32> = 20.0..=70.0;
+
+/// All that is not part of the document. It is kept from one start to the next, but for the tool.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Settings {
     /// What the pen does.
+    #[serde(skip)]
     pub tool: Tool,
     /// Which buttons turn and move the view.
     pub habit: Habit,
@@ -111,6 +156,10 @@ pub struct Settings {
     pub room: [f32; 3],
     /// Whether the tree is on the right and the parameters are on the left.
     pub left_handed: bool,
+    /// Light or dark.
+    pub theme: Theme,
+    /// How large everything is, times its usual size.
+    pub scale: f32,
     /// How meshes are written.
     pub export: ExportOptions,
 }
@@ -126,7 +175,34 @@ impl Default for Settings {
             shows_ground: true,
             room: [220.0, 220.0, 250.0],
             left_handed: false,
+            theme: Theme::System,
+            scale: 1.0,
             export: ExportOptions::default(),
         }
+    }
+}
+
+impl Settings {
+    /// Those with every number in its range.
+    pub(crate) fn in_range(self) -> Self {
+        let within = |value: f32, range: &RangeInclusive<f32>| value.clamp(*range.start(), *range.end());
+        let export = ExportOptions {
+            cell_mm: self.export.cell_mm.map(|cell| within(cell, &ExportOptions::CELLS)),
+            tolerance_mm: within(self.export.tolerance_mm, &ExportOptions::TOLERANCES),
+            ..self.export
+        };
+        Self {
+            overhang: within(self.overhang, &OVERHANGS),
+            room: self.room.map(|side| side.clamp(10.0, 2000.0)),
+            scale: within(self.scale, &SCALES),
+            export,
+            ..self
+        }
+    }
+
+    /// Has everything look as they say.
+    pub(crate) fn dress(&self, ctx: &Context) {
+        ctx.set_theme(self.theme.preference());
+        ctx.set_zoom_factor(self.scale);
     }
 }

@@ -2,11 +2,12 @@
 
 use crate::solid::Solid;
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 use sketch::suggest::View;
 use std::sync::Arc;
 
 /// How the solid is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Look {
     /// As if it were there.
     #[default]

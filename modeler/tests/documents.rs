@@ -47,7 +47,7 @@ impl Desk for SlowDesk {
         Ok(format!("Exported {}.", path.display()))
     }
 
-    fn browse(&self, _: Purpose, _: Arc<dyn Fn() + Send + Sync>) -> bool {
+    fn browse(&self, _: Purpose, _: Option<&Path>, _: Arc<dyn Fn() + Send + Sync>) -> bool {
         false
     }
 
@@ -137,8 +137,8 @@ fn an_export_shows_how_far_it_is_while_the_work_goes_on_and_can_be_stopped() {
     screen.key_combination_modifiers(Modifiers::COMMAND, &[Key::D]);
     until(&mut screen, |screen| parts(screen).len() == 2);
     tap(&mut screen, "Stop");
-    settle(&mut screen);
-    assert!(told(&screen, "Not exported: stopped") && !file.exists());
+    until(&mut screen, |screen| told(screen, "Not exported: stopped"));
+    assert!(!file.exists());
 }
 
 #[test]

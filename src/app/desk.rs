@@ -124,7 +124,7 @@ impl Desk for Files {
         })
     }
 
-    fn browse(&self, purpose: Purpose, wake: Arc<dyn Fn() + Send + Sync>) -> bool {
+    fn browse(&self, purpose: Purpose, folder: Option<&Path>, wake: Arc<dyn Fn() + Send + Sync>) -> bool {
         let (sender, receiver) = mpsc::channel();
         let dialog = match purpose {
             Purpose::Open | Purpose::Add => rfd::FileDialog::new().add_filter(
@@ -137,6 +137,10 @@ impl Desk for Files {
             Purpose::Export => rfd::FileDialog::new()
                 .add_filter("Meshes", &["3mf", "stl", "obj", "ply"])
                 .set_file_name("model.3mf"),
+        };
+        let dialog = match folder {
+            Some(folder) => dialog.set_directory(folder),
+            None => dialog,
         };
         *self.browsing.lock().unwrap_or_else(PoisonError::into_inner) = Some(receiver);
         let browse = move || {

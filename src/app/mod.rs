@@ -33,7 +33,7 @@ const LARGEST_BUFFER: u64 = 1 << 30;
 ///
 /// Errors: no display or no graphics driver, with what to do; a system that cannot run threads; a trace that cannot be
 /// written.
-pub fn run(file: Option<&Path>, sessions: Option<PathBuf>, trace: Option<&Path>) -> Result<(), Failure> {
+pub fn run(file: Option<&Path>, state: Option<PathBuf>, trace: Option<&Path>) -> Result<(), Failure> {
     let trace = trace.map(trace_to).transpose()?;
     let mut options = NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -46,7 +46,7 @@ pub fn run(file: Option<&Path>, sessions: Option<PathBuf>, trace: Option<&Path>)
     ask_for_large_buffers(&mut options);
     let file = file.map(Path::to_path_buf);
     let create = move |context: &CreationContext| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
-        Ok(Box::new(App::new(context, file.as_deref(), sessions, trace)?))
+        Ok(Box::new(App::new(context, file.as_deref(), state.as_deref(), trace)?))
     };
     eframe::run_native("Trullo", options, Box::new(create)).map_err(|error| Failure::Input(advice(&error)))
 }
@@ -57,13 +57,13 @@ fn trace_to(path: &Path) -> Result<Trace, Failure> {
     Ok(Trace::new(Box::new(file)))
 }
 
-/// Where sessions are kept: with the user's other state.
-pub fn sessions() -> Option<PathBuf> {
+/// Where sessions, settings and pictures are kept: with the user's other state.
+pub fn state() -> Option<PathBuf> {
     let home = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let state = home("XDG_STATE_HOME")
         .or_else(|| home("LOCALAPPDATA"))
         .or_else(|| home("HOME").map(|home| home.join(".local/state")));
-    state.map(|state| state.join("trullo/sessions"))
+    state.map(|state| state.join("trullo"))
 }
 
 /// What to do where no window opens.
@@ -110,14 +110,18 @@ impl App {
     fn new(
         context: &CreationContext,
         file: Option<&Path>,
-        sessions: Option<PathBuf>,
+        state: Option<&Path>,
         trace: Option<Trace>,
     ) -> std::io::Result<Self> {
         let ctx = context.egui_ctx.clone();
+        let sessions = state.map(|state| state.join("sessions"));
         let left = sessions.as_deref().map(LeftBehind::all).unwrap_or_default();
         let mut modeler =
             Modeler::new(Box::new(Files::default()), sessions, Arc::new(move || ctx.request_repaint()))?;
         modeler.trace = trace;
+        if let Some(state) = state {
+            modeler.keep_in(state);
+        }
         if let Some(file) = file {
             modeler.begin_with(file.to_path_buf());
         }

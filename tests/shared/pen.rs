@@ -50,7 +50,7 @@ impl Desk for NoDesk {
         Err(Undone::Failed("no files here".into()))
     }
 
-    fn browse(&self, _: Purpose, _: Arc<dyn Fn() + Send + Sync>) -> bool {
+    fn browse(&self, _: Purpose, _: Option<&Path>, _: Arc<dyn Fn() + Send + Sync>) -> bool {
         false
     }
 

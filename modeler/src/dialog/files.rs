@@ -56,7 +56,8 @@ pub fn show(
         taken |= ui.button(word).clicked();
         if ui.button("Browse…").clicked() {
             let ctx = ui.ctx().clone();
-            if !modeler.desk.browse(purpose, Arc::new(move || ctx.request_repaint())) {
+            let folder = modeler.last_folder();
+            if !modeler.desk.browse(purpose, folder.as_deref(), Arc::new(move || ctx.request_repaint())) {
                 modeler.notices.tell("This system has no window for files; type the name.");
             }
         }
@@ -95,7 +96,7 @@ fn options(ui: &mut Ui, options: &mut ExportOptions, format: &str) {
                 options.cell_mm = (!fits).then_some(0.25);
             }
             if let Some(cell) = &mut options.cell_mm {
-                let drag = DragValue::new(cell).range(0.01..=10.0).speed(0.005).suffix(" mm");
+                let drag = DragValue::new(cell).range(ExportOptions::CELLS).speed(0.005).suffix(" mm");
                 ui.add(drag).labelled_by(label.id);
             }
         });
@@ -103,7 +104,10 @@ fn options(ui: &mut Ui, options: &mut ExportOptions, format: &str) {
         let label = ui
             .label("Fewer triangles")
             .on_hover_text("Leaves out triangles while the surface moves by no more than this; 0 keeps all");
-        let drag = DragValue::new(&mut options.tolerance_mm).range(0.0..=1.0).speed(0.001).suffix(" mm");
+        let drag = DragValue::new(&mut options.tolerance_mm)
+            .range(ExportOptions::TOLERANCES)
+            .speed(0.001)
+            .suffix(" mm");
         ui.add(drag).labelled_by(label.id);
         ui.end_row();
         match format {

@@ -51,12 +51,13 @@ pub enum Then {
 impl Dialog {
     /// Asks for a file to be opened.
     pub fn begin_open(modeler: &mut Modeler) {
-        modeler.dialog = Some(Self::File { purpose: Purpose::Open, text: String::new(), then: None });
+        modeler.dialog =
+            Some(Self::File { purpose: Purpose::Open, text: in_folder(modeler, ""), then: None });
     }
 
     /// Asks for a file to be added.
     pub fn begin_add(modeler: &mut Modeler) {
-        modeler.dialog = Some(Self::File { purpose: Purpose::Add, text: String::new(), then: None });
+        modeler.dialog = Some(Self::File { purpose: Purpose::Add, text: in_folder(modeler, ""), then: None });
     }
 
     /// Goes to a new page, if nothing is lost by it.
@@ -69,7 +70,8 @@ impl Dialog {
         match modeler.bench.file().map(PathBuf::from) {
             Some(file) if !under_another_name => modeler.save_to(file, then),
             file => {
-                let text = file.map_or("model.trullo".into(), |file| file.display().to_string());
+                let text = file
+                    .map_or_else(|| in_folder(modeler, "model.trullo"), |file| file.display().to_string());
                 modeler.dialog = Some(Self::File { purpose: Purpose::Save, text, then });
             }
         }
@@ -78,7 +80,7 @@ impl Dialog {
     /// Asks for the name of the exported file, and how it is written.
     pub fn begin_export(modeler: &mut Modeler) {
         let file = modeler.bench.file().map(|file| file.with_extension("3mf").display().to_string());
-        let text = file.unwrap_or_else(|| "model.3mf".into());
+        let text = file.unwrap_or_else(|| in_folder(modeler, "model.3mf"));
         modeler.dialog = Some(Self::File { purpose: Purpose::Export, text, then: None });
     }
 
@@ -109,6 +111,11 @@ impl Dialog {
             Self::Help => "Keys and gestures",
         }
     }
+}
+
+/// A name in the folder where the user worked last.
+fn in_folder(modeler: &Modeler, name: &str) -> String {
+    modeler.last_folder().map_or(name.into(), |folder| folder.join(name).display().to_string())
 }
 
 /// Shows the question and does what is answered.

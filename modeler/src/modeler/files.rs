@@ -30,6 +30,8 @@ pub enum Newcomer {
         scene: Scene,
         /// The file that it is in, or may be saved as.
         file: Option<PathBuf>,
+        /// The file that it was read from.
+        origin: Option<PathBuf>,
         /// Whether it is in that file as it is.
         is_saved: bool,
     },
@@ -74,7 +76,8 @@ impl Modeler {
     /// Puts on the table what may take it.
     pub(crate) fn take_in(&mut self, newcomer: Newcomer) {
         match newcomer {
-            Newcomer::Scene { scene, file, is_saved } => {
+            Newcomer::Scene { scene, file, origin, is_saved } => {
+                origin.into_iter().for_each(|origin| self.kept.remember(&origin, &scene.root));
                 self.put(scene, file);
                 if !is_saved {
                     self.bench.never_saved();
@@ -134,11 +137,12 @@ impl Modeler {
         let Fetched { scene, path, is_scene, notices } = fetched;
         notices.into_iter().for_each(|notice| self.notices.tell(notice));
         let is_saved = is_scene && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("trullo"));
+        let origin = Some(path.clone());
         let file = match is_scene {
-            true => is_saved.then_some(path),
+            true => is_saved.then(|| path.clone()),
             false => Some(free_name(&path)),
         };
-        let newcomer = Newcomer::Scene { scene, file, is_saved: is_saved || is_scene };
+        let newcomer = Newcomer::Scene { scene, file, origin, is_saved: is_scene };
         Dialog::begin(self, Then::Put(Box::new(newcomer)));
     }
 
@@ -150,7 +154,7 @@ impl Modeler {
             let read = Scene::from_bytes(text.as_bytes(), &mut *desk.sources(None));
             Box::new(move |modeler| match read {
                 Ok(scene) => {
-                    let newcomer = Newcomer::Scene { scene, file: None, is_saved: true };
+                    let newcomer = Newcomer::Scene { scene, file: None, origin: None, is_saved: true };
                     Dialog::begin(modeler, Then::Put(Box::new(newcomer)));
                 }
                 Err(error) => modeler.notices.warn(error.to_string()),
@@ -190,6 +194,7 @@ impl Modeler {
             Box::new(move |modeler| match saved {
                 Ok(()) => {
                     modeler.notices.tell("Saved.");
+                    modeler.kept.remember(&file, &scene.root);
                     if modeler.documents == document {
                         modeler.saved(&scene.root, file, scene.title.as_ref());
                         then.into_iter().for_each(|then| Dialog::begin(modeler, then));
@@ -222,6 +227,12 @@ impl Modeler {
     /// The folder from which the document names its meshes.
     pub(super) fn folder(&self) -> PathBuf {
         self.bench.file().map(folder_of).unwrap_or_default()
+    }
+
+    /// The folder where the user worked last, if it is known.
+    pub(crate) fn last_folder(&self) -> Option<PathBuf> {
+        let folder = self.bench.file().and_then(Path::parent).or_else(|| self.kept.folder())?;
+        Some(folder.to_path_buf()).filter(|folder| !folder.as_os_str().is_empty())
     }
 
     /// Opens a file with the first frame.

@@ -1,11 +1,12 @@
 //! The bar above: files, undo, the pen's tools, and how the model is shown.
 
+use super::recent;
 use crate::dialog::{Dialog, Then};
 use crate::lesson::Lesson;
 use crate::modeler::Modeler;
-use crate::settings::{Habit, Tool};
+use crate::settings::{Habit, OVERHANGS, SCALES, Theme, Tool};
 use crate::stage::Look;
-use egui::{Button, ThemePreference, Ui, Widget as _};
+use egui::{Button, Ui, Widget as _};
 
 /// Shows it.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
@@ -52,23 +53,28 @@ fn entry<'a>(text: &'a str, keys: &'a str) -> Button<'a> {
     if keys.is_empty() { button } else { button.shortcut_text(keys) }
 }
 
+/// A line of the menu that is always there.
+fn item(modeler: &mut Modeler, ui: &mut Ui, text: &str, keys: &str, run: fn(&mut Modeler)) {
+    if ui.add(entry(text, keys)).clicked() {
+        run(modeler);
+        ui.close();
+    }
+}
+
 fn files(modeler: &mut Modeler, ui: &mut Ui) {
-    let mut item = |ui: &mut Ui, text: &str, keys: &str, run: fn(&mut Modeler)| {
-        if ui.add(entry(text, keys)).clicked() {
-            run(modeler);
-            ui.close();
-        }
-    };
-    item(ui, "New page", "Ctrl+N", Dialog::begin_new);
-    item(ui, "Examples…", "", |m| m.dialog = Some(Dialog::Examples));
-    item(ui, "Open…", "Ctrl+O", Dialog::begin_open);
-    item(ui, "Add…", "", Dialog::begin_add);
+    item(modeler, ui, "New page", "Ctrl+N", Dialog::begin_new);
+    item(modeler, ui, "Examples…", "", |m| m.dialog = Some(Dialog::Examples));
+    item(modeler, ui, "Open…", "Ctrl+O", Dialog::begin_open);
+    if !modeler.kept.recent.is_empty() {
+        ui.menu_button("Open again", |ui| recent::menu(modeler, ui));
+    }
+    item(modeler, ui, "Add…", "", Dialog::begin_add);
     ui.separator();
-    item(ui, "Save", "Ctrl+S", |m| Dialog::begin_save(m, false, None));
-    item(ui, "Save as…", "Ctrl+Shift+S", |m| Dialog::begin_save(m, true, None));
-    item(ui, "Export…", "Ctrl+E", Dialog::begin_export);
+    item(modeler, ui, "Save", "Ctrl+S", |m| Dialog::begin_save(m, false, None));
+    item(modeler, ui, "Save as…", "Ctrl+Shift+S", |m| Dialog::begin_save(m, true, None));
+    item(modeler, ui, "Export…", "Ctrl+E", Dialog::begin_export);
     ui.separator();
-    item(ui, "Quit", "", |m| Dialog::begin(m, Then::Quit));
+    item(modeler, ui, "Quit", "", |m| Dialog::begin(m, Then::Quit));
 }
 
 fn edit(modeler: &mut Modeler, ui: &mut Ui) {
@@ -103,7 +109,7 @@ fn view(modeler: &mut Modeler, ui: &mut Ui) {
     ui.separator();
     ui.checkbox(&mut settings.shows_overhang, "Tint overhangs");
     let label = ui.label("leaning out by more than");
-    let angle = egui::DragValue::new(&mut settings.overhang).range(20.0..=70.0).suffix("°").ui(ui);
+    let angle = egui::DragValue::new(&mut settings.overhang).range(OVERHANGS).suffix("°").ui(ui);
     angle.labelled_by(label.id);
     ui.checkbox(&mut settings.shows_ground, "Ground and printer's room");
     ui.checkbox(&mut settings.left_handed, "For left-handed people");
@@ -114,20 +120,11 @@ fn view(modeler: &mut Modeler, ui: &mut Ui) {
         }
     });
     ui.menu_button("Light and dark", |ui| {
-        let mut theme = ui.ctx().options(|options| options.theme_preference);
-        for (name, choice) in [
-            ("As the system", ThemePreference::System),
-            ("Light", ThemePreference::Light),
-            ("Dark", ThemePreference::Dark),
-        ] {
-            if ui.radio_value(&mut theme, choice, name).clicked() {
-                ui.ctx().set_theme(choice);
-            }
+        for theme in Theme::ALL {
+            ui.radio_value(&mut settings.theme, theme, theme.name());
         }
     });
-    let mut zoom = ui.ctx().zoom_factor();
     let label = ui.label("Size of everything");
-    if egui::DragValue::new(&mut zoom).range(0.6..=2.5).speed(0.01).ui(ui).labelled_by(label.id).changed() {
-        ui.ctx().set_zoom_factor(zoom);
-    }
+    let scale = egui::DragValue::new(&mut settings.scale).range(SCALES).speed(0.01);
+    scale.ui(ui).labelled_by(label.id);
 }

@@ -3,6 +3,7 @@
 mod bar;
 mod history;
 mod parameters;
+pub(crate) mod recent;
 mod status;
 mod tree;
 

@@ -42,7 +42,7 @@ impl Desk for TestDesk {
         Ok(format!("Exported {}.", path.display()))
     }
 
-    fn browse(&self, _: Purpose, _: Arc<dyn Fn() + Send + Sync>) -> bool {
+    fn browse(&self, _: Purpose, _: Option<&Path>, _: Arc<dyn Fn() + Send + Sync>) -> bool {
         false
     }
 
