@@ -65,6 +65,9 @@ pub(super) fn apply(scene: &Scene, command: Command) -> Result<Scene, CommandErr
         Command::SetConstruction { path, construction } => {
             edit(root, &path, |node| change(node, Node { construction, ..(**node).clone() }))?
         }
+        Command::Together(commands) => {
+            return commands.into_iter().try_fold(scene.clone(), |scene, command| apply(&scene, command));
+        }
         Command::SetTitle { title } => return Ok(Scene { title, ..scene.clone() }),
     };
     if may_be_illegal && !NodeRef::ptr_eq(&new_root, root) {

@@ -118,6 +118,9 @@ pub enum Command {
         /// Whether it is for construction only.
         construction: bool,
     },
+    /// Several commands, one after the other, as one step; each means the tree that the one before it has left.
+    /// Nothing is done unless all of them can be.
+    Together(Vec<Command>),
     /// Names the scene.
     SetTitle {
         /// The title; none for an untitled scene.
@@ -258,6 +261,11 @@ impl Command {
             Self::SetMuted { path, muted: false } => format!("Unmute {}", at(path)),
             Self::SetConstruction { path, construction: true } => format!("Make {} construction", at(path)),
             Self::SetConstruction { path, construction: false } => format!("Make {} solid", at(path)),
+            Self::Together(commands) => match &commands[..] {
+                [] => "Nothing".into(),
+                [only] => only.name(root),
+                [first, rest @ ..] => format!("{} and {} more", first.name(root), rest.len()),
+            },
             Self::SetTitle { .. } => "Change title".into(),
         }
     }

@@ -247,6 +247,27 @@ fn commands_that_change_nothing_leave_no_step() {
 }
 
 #[test]
+fn commands_done_together_are_one_step_and_all_or_none_is_done() {
+    let mut document = document();
+    let before = document.scene().root.clone();
+    let together = Command::Together(vec![
+        Command::Remove { path: path("/1/2") },
+        Command::Move { from: path("/1/0"), parent: path("/"), index: 0 },
+        // By now the group is one place further on.
+        Command::SetName { path: path("/2"), name: Some("rest".into()) },
+    ]);
+    document.apply(together).expect("all can be done");
+    assert_eq!(outline(&document.scene().root), "union(b a rest(c) transform(e))");
+    assert_eq!(document.undo_names().collect::<Vec<_>>(), ["Remove d and 2 more"]);
+    document.undo();
+    assert!(NodeRef::ptr_eq(&document.scene().root, &before));
+    let half =
+        Command::Together(vec![Command::Remove { path: path("/0") }, Command::Remove { path: path("/7") }]);
+    assert_eq!(document.apply(half).map(|_| ()), Err(CommandError::NoSuchNode(path("/7"))));
+    assert!(NodeRef::ptr_eq(&document.scene().root, &before));
+}
+
+#[test]
 fn steps_have_names_for_the_history() {
     let mut document = document();
     document.apply(Command::SetMuted { path: path("/0"), muted: true }).expect("legal");

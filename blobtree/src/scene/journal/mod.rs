@@ -30,7 +30,7 @@ pub(super) fn childless(shape: NewShape) -> Shape {
 }
 
 /// What can be done, each with its own fields.
-const WORDS: [(&str, &[&str]); 16] = [
+const WORDS: [(&str, &[&str]); 17] = [
     ("insert", &["parent", "index", "define", "node"]),
     ("remove", &["path"]),
     ("replace", &["path", "define", "node"]),
@@ -45,6 +45,7 @@ const WORDS: [(&str, &[&str]); 16] = [
     ("set_muted", &["path", "muted"]),
     ("set_construction", &["path", "construction"]),
     ("set_title", &["title"]),
+    ("together", &["commands"]),
     ("undo", &[]),
     ("redo", &[]),
 ];

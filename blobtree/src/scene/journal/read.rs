@@ -31,6 +31,9 @@ fn entry(value: Value, scene: &Scene, sources: &mut dyn SceneSources) -> Result<
     };
     header(&mut fields, FORMAT)?;
     let word = word(&mut fields)?;
+    if word == "together" {
+        return together(&mut fields, scene, sources).map(Command::Together).map(JournalEntry::Command);
+    }
     let mut line = Line { fields, reader: NodeReader::after(Before(scene), sources) };
     Ok(JournalEntry::Command(match word {
         "undo" => return Ok(JournalEntry::Undo),
@@ -56,6 +59,33 @@ fn entry(value: Value, scene: &Scene, sources: &mut dyn SceneSources) -> Result<
         }
         _ => Command::SetTitle { title: line.text("title")? },
     }))
+}
+
+/// Commands, each as the line that it has by itself.
+fn together(
+    fields: &mut Map<String, Value>,
+    scene: &Scene,
+    sources: &mut dyn SceneSources,
+) -> Result<Vec<Command>, Fault> {
+    let expected = "a list of commands, each an object as on a line by itself";
+    let value = parameters::need(fields, "commands", expected)?;
+    let Value::Array(lines) = value else {
+        let problem = parameters::wrong("commands", described(&value), expected);
+        return Err(Fault { steps: vec![Step::key("commands")], problem });
+    };
+    let command = |(index, line): (usize, Value)| {
+        let within = |steps| [vec![Step::key("commands"), Step::Index(index)], steps].concat();
+        let shown = described(&line);
+        match entry(line, scene, sources) {
+            Ok(JournalEntry::Command(command)) => Ok(command),
+            Ok(JournalEntry::Undo | JournalEntry::Redo) => {
+                let problem = parameters::wrong("commands", shown, "commands only, no undo and no redo");
+                Err(Fault { steps: within(Vec::new()), problem })
+            }
+            Err(Fault { steps, problem }) => Err(Fault { steps: within(steps), problem }),
+        }
+    };
+    lines.into_iter().enumerate().map(command).collect()
 }
 
 /// The word that says what was done; the other fields are ones that belong to it.

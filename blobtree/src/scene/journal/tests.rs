@@ -91,7 +91,7 @@ impl OperatorOver for crate::node::Node {
 fn random_entry(rng: &mut Rng, trees: &mut RandomTree, scene: &Scene) -> JournalEntry {
     let (path, node) = place(rng, &scene.root);
     let (parent, index) = (place(rng, &scene.root).0, rng.usize(..4));
-    JournalEntry::Command(match rng.u32(..24) {
+    JournalEntry::Command(match rng.u32(..26) {
         0 | 1 => return JournalEntry::Undo,
         2 => return JournalEntry::Redo,
         3..6 => Command::Insert { parent, index, node: material(rng, trees, scene) },
@@ -110,6 +110,10 @@ fn random_entry(rng: &mut Rng, trees: &mut RandomTree, scene: &Scene) -> Journal
         19 => Command::WrapInSupportFree { path, rule: trees.rule() },
         20 | 21 => Command::AddStroke { path, stroke: Arc::new(trees.stroke()) },
         22 => Command::RemoveStroke { path, index },
+        23 | 24 => {
+            let insert = Command::Insert { parent, index, node: material(rng, trees, scene) };
+            Command::Together(vec![insert, Command::SetName { path, name: Some("both".into()) }])
+        }
         _ => Command::SetTitle { title: rng.bool().then(|| format!("t{}", rng.u32(..9))) },
     })
 }
@@ -230,6 +234,13 @@ fn every_entry_has_the_line_that_the_format_describes() {
             r#""do":"set_construction","path":"/1","construction":true"#.into(),
         ),
         (Command::SetTitle { title: Some("T".into()) }, r#""do":"set_title","title":"T""#.into()),
+        (
+            Command::Together(vec![
+                Command::SetMuted { path: p(), muted: true },
+                Command::Unwrap { path: p() },
+            ]),
+            r#""do":"together","commands":[{"format":"trullo-journal","version":1,"do":"set_muted","path":"/1","muted":true},{"format":"trullo-journal","version":1,"do":"unwrap","path":"/1"}]"#.into(),
+        ),
     ];
     for (command, expected) in cases {
         let line = JournalEntry::Command(command).to_line(&scene).expect("legal");
@@ -291,6 +302,14 @@ fn lines_that_are_wrong_are_refused_with_the_place_and_the_reason() {
         ),
         (r#""do":"set_color","path":"/0","color":"red""#, "`color` is the text \"red\", not a colour"),
         (r#""do":"set_muted","path":"/0","muted":NaN"#, "not JSON"),
+        (
+            r#""do":"together","commands":[{"format":"trullo-journal","version":1,"do":"undo"}]"#,
+            "`commands` is an object, not commands only, no undo and no redo",
+        ),
+        (
+            r#""do":"together","commands":[{"format":"trullo-journal","version":1,"do":"remove","path":"0"}]"#,
+            "line 1, column 126: `path` is the text",
+        ),
     ];
     for (rest, expected) in cases {
         let error = said(rest);

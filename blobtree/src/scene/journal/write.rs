@@ -10,15 +10,20 @@ use crate::support_free::BrushStroke;
 
 /// See [`JournalEntry::to_line`].
 pub(crate) fn write(entry: &JournalEntry, scene: &Scene) -> Result<String, SceneError> {
-    let (line, with) = match entry {
-        JournalEntry::Command(command) => {
-            if let Command::AddStroke { stroke, .. } = command {
-                stroke.check("stroke").map_err(SceneProblem::from)?;
-            }
-            parts(command)
-        }
-        JournalEntry::Undo => (Line::of("undo"), With::Nothing),
-        JournalEntry::Redo => (Line::of("redo"), With::Nothing),
+    match entry {
+        JournalEntry::Command(command) => line(command, scene),
+        JournalEntry::Undo => Ok(text_of(&Line::of("undo"))),
+        JournalEntry::Redo => Ok(text_of(&Line::of("redo"))),
+    }
+}
+
+fn line(command: &Command, scene: &Scene) -> Result<String, SceneError> {
+    if let Command::AddStroke { stroke, .. } = command {
+        stroke.check("stroke").map_err(SceneProblem::from)?;
+    }
+    let (line, with) = match command {
+        Command::Together(commands) => return together(commands, scene),
+        other => parts(other),
     };
     let text = match with {
         With::Nothing => text_of(&line),
@@ -37,6 +42,15 @@ pub(crate) fn write(entry: &JournalEntry, scene: &Scene) -> Result<String, Scene
             })
         }
     };
+    bounds::check(&text)?;
+    Ok(text)
+}
+
+/// Each of the commands as the line that it has by itself.
+fn together(commands: &[Command], scene: &Scene) -> Result<String, SceneError> {
+    let lines = commands.iter().map(|command| line(command, scene)).collect::<Result<Vec<_>, _>>()?;
+    let head = text_of(&Line::of("together"));
+    let text = format!("{},\"commands\":[{}]}}", head.trim_end_matches('}'), lines.join(","));
     bounds::check(&text)?;
     Ok(text)
 }
@@ -94,6 +108,7 @@ fn parts(command: &Command) -> (Line<'_>, With<'_>) {
         Command::SetConstruction { path, construction } => {
             plain(Line { construction: Some(*construction), ..Line::at("set_construction", path) })
         }
+        Command::Together(_) => unreachable!("its line is made of lines"),
         Command::SetTitle { title } => plain(Line { title: title.as_deref(), ..Line::of("set_title") }),
     }
 }
