@@ -4,6 +4,7 @@ use crate::camera::Side;
 use crate::dialog::Dialog;
 use crate::modeler::Modeler;
 use crate::settings::Tool;
+use blobtree::Operator;
 use egui::{Key, KeyboardShortcut, Modifiers, Ui};
 
 /// A key, what it does in words, and how.
@@ -20,7 +21,7 @@ const fn with(modifiers: Modifiers, key: Key, help: &'static str, run: fn(&mut M
 }
 
 /// All keys, in the order of the help.
-pub const BINDINGS: [Binding; 30] = [
+pub const BINDINGS: [Binding; 33] = [
     with(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z, "do again what was undone", Modeler::redo),
     with(Modifiers::COMMAND, Key::Y, "do again what was undone", Modeler::redo),
     with(Modifiers::COMMAND, Key::Z, "undo the last stroke or step", Modeler::undo),
@@ -32,6 +33,8 @@ pub const BINDINGS: [Binding; 30] = [
     with(Modifiers::COMMAND, Key::S, "save", |m| Dialog::begin_save(m, false, None)),
     with(Modifiers::COMMAND, Key::E, "export for printing", Dialog::begin_export),
     with(Modifiers::COMMAND, Key::D, "duplicate what is selected", Modeler::duplicate_selected),
+    with(Modifiers::COMMAND, Key::G, "put what is selected together", |m| m.group_selected(Operator::Union)),
+    with(Modifiers::COMMAND, Key::M, "mute what is selected, or let it be heard", Modeler::mute_selected),
     with(Modifiers::NONE, Key::Delete, "remove what is selected", Modeler::remove_selected),
     with(Modifiers::NONE, Key::Backspace, "remove what is selected", Modeler::remove_selected),
     with(Modifiers::NONE, Key::Escape, "put the sketch away, else select nothing", escape),
@@ -41,6 +44,7 @@ pub const BINDINGS: [Binding; 30] = [
     with(Modifiers::NONE, Key::L, "the field lens: what makes the value at a place", Modeler::toggle_lens),
     with(Modifiers::NONE, Key::F, "see everything", |m| m.camera.show(m.bounds())),
     with(Modifiers::NONE, Key::D, "draw", |m| m.settings.tool = Tool::Draw),
+    with(Modifiers::NONE, Key::S, "select several", |m| m.settings.tool = Tool::Select),
     with(Modifiers::NONE, Key::E, "erase", |m| m.settings.tool = Tool::Erase),
     with(Modifiers::NONE, Key::T, "turn the model", |m| m.settings.tool = Tool::Turn),
     with(Modifiers::NONE, Key::V, "move the view", |m| m.settings.tool = Tool::Pan),

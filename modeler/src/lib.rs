@@ -30,6 +30,7 @@ pub mod pad;
 mod panels;
 pub mod placing;
 pub mod settings;
+pub mod several;
 pub mod solid;
 pub mod stage;
 pub mod thumbnail;

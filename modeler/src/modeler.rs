@@ -2,6 +2,7 @@
 
 mod add;
 mod files;
+mod parts;
 
 pub use files::{Fetched, How, Newcomer};
 
@@ -19,7 +20,6 @@ use crate::node_box::NodeBox;
 use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
 use crate::panels;
-use crate::placing::{self, Motion};
 use crate::settings::{Settings, Theme};
 use crate::solid::{Asking, Solid, SolidMaker};
 use crate::stage::Stage;
@@ -27,7 +27,6 @@ use crate::trace::{Trace, Wait};
 use crate::view::{self, ViewState};
 use crate::workbench::{EditError, Workbench};
 use blobtree::{Aabb, Command, JournalEntry, NodePath, NodeRef};
-use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -72,10 +71,11 @@ pub struct Modeler {
     pub(crate) view: ViewState,
     /// The node that the pointer is over, in the tree or in the view.
     pub(crate) hovered: Option<NodePath>,
-    /// Where the selected and the hovered node are.
-    boxes: [NodeBox; 2],
-    /// The middle of the selected node before it was dragged.
-    held_middle: Option<Vec3>,
+    /// Where the selected nodes are.
+    boxes: Vec<NodeBox>,
+    hovered_box: NodeBox,
+    /// Around the selected nodes before they were dragged.
+    held_box: Option<Aabb>,
     /// The form of the selected node, and the scene it was made for.
     pub(crate) form: Option<(NodeRef, Form)>,
     /// The file to be opened as soon as the size of the view is known, which drawings need.
@@ -127,8 +127,9 @@ impl Modeler {
             asking: Asking::Other,
             view: ViewState::default(),
             hovered: None,
-            boxes: Default::default(),
-            held_middle: None,
+            boxes: Vec::new(),
+            hovered_box: NodeBox::default(),
+            held_box: None,
             form: None,
             waiting: None,
             solids,
@@ -220,6 +221,11 @@ impl Modeler {
         view::knobs(self)
     }
 
+    /// On what the dragged parts rest: "on the bed, z = 0".
+    pub fn rests_on(&self) -> Vec<&'static str> {
+        self.view.guides.iter().map(|guide| guide.name()).collect()
+    }
+
     /// Takes in what the background threads have made.
     fn hear(&mut self) {
         self.receive();
@@ -253,31 +259,28 @@ impl Modeler {
         }
     }
 
-    /// Finds where the selected and the hovered node are.
+    /// Finds where the selected nodes and the hovered one are.
     fn measure(&mut self) {
         let root = &self.bench.shown().root;
-        let paths = [self.bench.selected(), self.hovered.as_ref()];
-        for (known, path) in self.boxes.iter_mut().zip(paths) {
-            known.follow(root, path);
+        let selection = self.bench.selection();
+        self.boxes.resize_with(selection.len(), NodeBox::default);
+        for (known, path) in self.boxes.iter_mut().zip(selection) {
+            known.follow(root, Some(path));
         }
+        self.hovered_box.follow(root, self.hovered.as_ref());
         if NodeRef::ptr_eq(root, &self.bench.scene().root) {
-            self.held_middle = self.selected_box().map(|bounds| bounds.center());
+            self.held_box = self.selected_box();
         }
     }
 
-    /// Around the solid of the selected node, as it is shown, mm.
-    pub fn selected_box(&self) -> Option<Aabb> {
-        self.boxes[0].solid
-    }
-
-    /// The middle of the selected node before the hand took hold of it, mm.
-    pub(crate) fn held_middle(&self) -> Option<Vec3> {
-        self.held_middle
+    /// Around the selected nodes before the hand took hold of them, mm.
+    pub(crate) fn held_box(&self) -> Option<Aabb> {
+        self.held_box
     }
 
     /// Around the solid of the node that the pointer is over in the tree, mm.
     pub(crate) fn hovered_box(&self) -> Option<Aabb> {
-        self.boxes[1].solid
+        self.hovered_box.solid
     }
 
     /// Asks the background threads for what has changed.
@@ -385,61 +388,6 @@ impl Modeler {
         }
     }
 
-    /// Selects a node, or nothing.
-    pub fn select(&mut self, path: Option<NodePath>) {
-        self.bench.select(path);
-        self.selected_by_hand = true;
-        self.think();
-    }
-
-    /// Selects the parent of what is selected; above the root, nothing.
-    pub fn select_parent(&mut self) {
-        self.select(self.bench.selected().and_then(NodePath::parent));
-    }
-
-    /// Takes away what is selected.
-    pub fn remove_selected(&mut self) {
-        if let Some(command) = self.bench.remove_selected() {
-            self.bench.select(None);
-            self.apply(command);
-        }
-    }
-
-    /// Puts a copy of what is selected beside it.
-    pub fn duplicate_selected(&mut self) {
-        let Some(command) = self.bench.duplicate_selected() else {
-            if self.bench.selected().is_some() {
-                self.notices.tell("Only parts of a union, a blend or a cut can have a copy beside them.");
-            }
-            return;
-        };
-        if self.apply(command) {
-            let copy = self.bench.selected().and_then(|path| {
-                let (last, rest) = path.0.split_last()?;
-                Some(NodePath([rest, &[last + 1]].concat()))
-            });
-            self.bench.select(copy);
-        }
-    }
-
-    /// Puts a mirrored copy of what is selected on the other side of the middle.
-    pub fn mirror_selected(&mut self) {
-        let Some(path) = self.bench.selected().cloned() else { return };
-        match placing::mirrored(&self.bench.scene().root, &path) {
-            Some(command) => {
-                self.apply(command);
-            }
-            None => self.notices.tell("Only parts of a union, a blend or a cut can have a copy beside them."),
-        }
-    }
-
-    /// Puts what is selected on the ground.
-    pub fn ground_selected(&mut self) {
-        if let Some(bounds) = self.selected_box() {
-            self.place(Motion::Move(Vec3::new(0.0, 0.0, -bounds.min.z)), true);
-        }
-    }
-
     /// Takes up the field lens, or puts it away.
     pub fn toggle_lens(&mut self) {
         self.lens = match self.lens.take() {
@@ -452,16 +400,6 @@ impl Modeler {
                 }
             },
         };
-    }
-
-    /// Shows what is selected moved, or moves it if the hand has let go.
-    pub(crate) fn place(&mut self, motion: Motion, let_go: bool) {
-        let Some(path) = self.bench.selected().cloned() else { return };
-        let command = placing::command(&self.bench.scene().root, &path, motion);
-        match command {
-            Some(command) => self.try_out(command, let_go),
-            None => self.notices.tell("What is inside a twist, a taper or a bend cannot be moved by hand."),
-        }
     }
 
     /// Shows what a command would do, or does it.

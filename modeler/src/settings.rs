@@ -12,6 +12,8 @@ pub enum Tool {
     /// Draws; a tap selects.
     #[default]
     Draw,
+    /// Selects several parts: each that is tapped, and all that are struck through.
+    Select,
     /// Rubs out strokes.
     Erase,
     /// Turns the model; for pens without buttons.
@@ -22,12 +24,13 @@ pub enum Tool {
 
 impl Tool {
     /// All, in the order of the bar.
-    pub const ALL: [Self; 4] = [Self::Draw, Self::Erase, Self::Turn, Self::Pan];
+    pub const ALL: [Self; 5] = [Self::Draw, Self::Select, Self::Erase, Self::Turn, Self::Pan];
 
     /// The name on the button.
     pub fn name(self) -> &'static str {
         match self {
             Self::Draw => "Draw",
+            Self::Select => "Select",
             Self::Erase => "Erase",
             Self::Turn => "Turn",
             Self::Pan => "Move view",
@@ -38,6 +41,9 @@ impl Tool {
     pub fn help(self) -> &'static str {
         match self {
             Self::Draw => "Draw with the pen; tap a part to select it (D)",
+            Self::Select => {
+                "Tap parts, or strike through them, to select several (S); Shift and Ctrl always do"
+            }
             Self::Erase => "Rub out strokes (E)",
             Self::Turn => "Turn the model by dragging; the right mouse button always does (T)",
             Self::Pan => "Move the view by dragging; the middle mouse button always does (V)",
@@ -48,6 +54,7 @@ impl Tool {
     pub fn key(self) -> egui::Key {
         match self {
             Self::Draw => egui::Key::D,
+            Self::Select => egui::Key::S,
             Self::Erase => egui::Key::E,
             Self::Turn => egui::Key::T,
             Self::Pan => egui::Key::V,
@@ -154,6 +161,8 @@ pub struct Settings {
     pub shows_ground: bool,
     /// The printer's room, mm.
     pub room: [f32; 3],
+    /// Whether what is dragged comes to rest on the bed, the middle and whole steps.
+    pub snaps: bool,
     /// Whether the tree is on the right and the parameters are on the left.
     pub left_handed: bool,
     /// Light or dark.
@@ -174,6 +183,7 @@ impl Default for Settings {
             overhang: 45.0,
             shows_ground: true,
             room: [220.0, 220.0, 250.0],
+            snaps: true,
             left_handed: false,
             theme: Theme::System,
             scale: 1.0,

@@ -1,9 +1,10 @@
 //! The document on the table: its file, its journal, what is selected, and the one way to change it.
 
 use crate::journal::{Journal, JournalError, Recovered};
+use crate::several;
 use blobtree::build::union;
 use blobtree::{
-    Change, Command, CommandError, Document, JournalEntry, Node, NodePath, NodeRef, Scene, SceneError, Shape,
+    Change, Command, CommandError, Document, JournalEntry, NodePath, NodeRef, Scene, SceneError,
 };
 use std::path::{Path, PathBuf};
 
@@ -21,8 +22,8 @@ pub struct Workbench {
     file: Option<PathBuf>,
     /// The scene as it was opened or saved.
     saved: Scene,
-    /// The selected node; always one that is there.
-    selected: Option<NodePath>,
+    /// The selected nodes, sorted; always ones that are there, and none below another one.
+    selection: Vec<NodePath>,
     /// What is shown instead of the document while something is dragged.
     preview: Option<Scene>,
 }
@@ -67,7 +68,7 @@ impl Workbench {
             broken: None,
             file,
             saved: scene,
-            selected: None,
+            selection: Vec::new(),
             preview: None,
         };
         Ok((bench, error))
@@ -83,7 +84,7 @@ impl Workbench {
             broken: None,
             file,
             saved: Scene::new(empty()),
-            selected: None,
+            selection: Vec::new(),
             preview: None,
         }
     }
@@ -129,20 +130,45 @@ impl Workbench {
         self.journal.is_some()
     }
 
-    /// What is selected.
+    /// The selected node, if it is exactly one.
     pub fn selected(&self) -> Option<&NodePath> {
-        self.selected.as_ref()
+        match &self.selection[..] {
+            [only] => Some(only),
+            _ => None,
+        }
     }
 
-    /// The selected node.
+    /// All selected nodes, in the order of the tree.
+    pub fn selection(&self) -> &[NodePath] {
+        &self.selection
+    }
+
+    /// The selected node, if it is exactly one.
     pub fn selected_node(&self) -> Option<&NodeRef> {
-        self.selected.as_ref()?.find(&self.scene().root)
+        self.selected()?.find(&self.scene().root)
     }
 
     /// Selects a node; one that is not there, and `None` select nothing.
     pub fn select(&mut self, path: Option<NodePath>) {
-        let is_there = |path: &NodePath| path.find(&self.scene().root).is_some();
-        self.selected = path.filter(is_there);
+        self.select_all(path);
+    }
+
+    /// Selects these nodes; those that are not there, and those below others are left out.
+    pub fn select_all(&mut self, paths: impl IntoIterator<Item = NodePath>) {
+        self.selection.clear();
+        for path in paths {
+            let is_known = self.selection.contains(&path);
+            if !is_known && path.find(&self.scene().root).is_some() {
+                several::toggle(&mut self.selection, path);
+            }
+        }
+    }
+
+    /// Selects a node with those that are selected, or no longer.
+    pub fn select_too(&mut self, path: NodePath) {
+        if path.find(&self.scene().root).is_some() {
+            several::toggle(&mut self.selection, path);
+        }
     }
 
     /// Does something: writes it to the journal, then carries it out. What is being dragged is let go.
@@ -155,8 +181,8 @@ impl Workbench {
         let written =
             self.journal.as_mut().map_or(Ok(()), |journal| journal.add(&entry, self.document.scene()));
         let change = self.document.repeat(entry)?;
-        let selected = self.selected.take();
-        self.select(selected);
+        let selection = std::mem::take(&mut self.selection);
+        self.select_all(selection);
         if let Err(error) = written {
             self.broken = self.journal.take();
             self.protect().map_err(|_| error)?;
@@ -224,31 +250,6 @@ impl Workbench {
         for journal in self.journal.into_iter().chain(self.broken) {
             journal.end();
         }
-    }
-
-    /// What takes the selected node away, with all below it and the warps that bend only it. None if that is all
-    /// there is.
-    pub fn remove_selected(&self) -> Option<Command> {
-        let mut path = self.selected.clone()?;
-        loop {
-            let parent = path.parent()?;
-            if matches!(parent.find(&self.scene().root)?.shape, Shape::Operator(..)) {
-                return Some(Command::Remove { path });
-            }
-            path = parent;
-        }
-    }
-
-    /// What puts a copy of the selected node beside it.
-    pub fn duplicate_selected(&self) -> Option<Command> {
-        let path = self.selected.as_ref()?;
-        let (parent, index) = (path.parent()?, *path.0.last()?);
-        let node = self.selected_node()?.clone();
-        matches!(parent.find(&self.scene().root)?.shape, Shape::Operator(..)).then_some(Command::Insert {
-            parent,
-            index: index + 1,
-            node,
-        })
     }
 }
 

@@ -171,11 +171,6 @@ fn the_parameters_of_what_is_selected_can_be_typed() {
     assert_eq!(sweep.length, 25.0);
 }
 
-/// Drags with the pen from one place to another, in steps, while the model follows.
-fn drag(screen: &mut Screen, from: egui::Pos2, by: egui::Vec2) {
-    draw(screen, (0..=10).map(|i| from + by * (i as f32 / 10.0)));
-}
-
 #[test]
 fn the_knob_beside_a_part_makes_it_thicker() {
     let mut screen = screen(None);

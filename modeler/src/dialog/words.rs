@@ -5,12 +5,13 @@ use crate::keys::BINDINGS;
 use egui::{Grid, Ui};
 
 /// Strokes that are commands.
-const GESTURES: [(&str, &str); 6] = [
+const GESTURES: [(&str, &str); 7] = [
     ("Scribble over a stroke", "rub it out"),
     ("Scribble over what is selected", "remove it"),
     ("Circle twice around a stroke", "make it smoother"),
     ("Quick stroke to the left", "undo"),
     ("Line straight up", "select the parent"),
+    ("Tap with Shift or Ctrl", "select several"),
     ("Stroke across a button", "press it"),
 ];
 

@@ -1,6 +1,7 @@
 //! The bar above: files, undo, the pen's tools, and how the model is shown.
 
 use super::recent;
+use super::edit;
 use crate::dialog::{Dialog, Then};
 use crate::lesson::Lesson;
 use crate::modeler::Modeler;
@@ -13,7 +14,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().button_padding = egui::vec2(9.0, 5.0);
         ui.menu_button("File", |ui| files(modeler, ui));
-        ui.menu_button("Edit", |ui| edit(modeler, ui));
+        ui.menu_button("Edit", |ui| edit::show(modeler, ui));
         ui.menu_button("View", |ui| view(modeler, ui));
         ui.separator();
         let undo = modeler.bench.document().undo_names().next().map(str::to_owned);
@@ -48,7 +49,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
 }
 
 /// A line of a menu, with its keys if it has some.
-fn entry<'a>(text: &'a str, keys: &'a str) -> Button<'a> {
+pub(super) fn entry<'a>(text: &'a str, keys: &'a str) -> Button<'a> {
     let button = Button::new(text);
     if keys.is_empty() { button } else { button.shortcut_text(keys) }
 }
@@ -77,24 +78,6 @@ fn files(modeler: &mut Modeler, ui: &mut Ui) {
     item(modeler, ui, "Quit", "", |m| Dialog::begin(m, Then::Quit));
 }
 
-fn edit(modeler: &mut Modeler, ui: &mut Ui) {
-    let selected = modeler.bench.selected().is_some();
-    let mut item = |ui: &mut Ui, text: &str, keys: &str, enabled: bool, run: fn(&mut Modeler)| {
-        if ui.add_enabled(enabled, entry(text, keys)).clicked() {
-            run(modeler);
-            ui.close();
-        }
-    };
-    item(ui, "Undo", "Ctrl+Z", true, Modeler::undo);
-    item(ui, "Redo", "Ctrl+Y", true, Modeler::redo);
-    ui.separator();
-    item(ui, "Duplicate", "Ctrl+D", selected, Modeler::duplicate_selected);
-    item(ui, "Mirror to the other side", "M", selected, Modeler::mirror_selected);
-    item(ui, "Put on the ground", "G", selected, Modeler::ground_selected);
-    item(ui, "Remove", "Delete", selected, Modeler::remove_selected);
-    item(ui, "Select the parent", "P", selected, Modeler::select_parent);
-}
-
 fn view(modeler: &mut Modeler, ui: &mut Ui) {
     let mut has_lens = modeler.lens.is_some();
     let lens = ui.checkbox(&mut has_lens, "Field lens");
@@ -112,6 +95,9 @@ fn view(modeler: &mut Modeler, ui: &mut Ui) {
     let angle = egui::DragValue::new(&mut settings.overhang).range(OVERHANGS).suffix("°").ui(ui);
     angle.labelled_by(label.id);
     ui.checkbox(&mut settings.shows_ground, "Ground and printer's room");
+    ui.checkbox(&mut settings.snaps, "Snap while dragging").on_hover_text(
+        "Parts come to rest on the bed, in the middle, and on whole steps; Ctrl lets them free",
+    );
     ui.checkbox(&mut settings.left_handed, "For left-handed people");
     ui.separator();
     ui.menu_button("Mouse", |ui| {

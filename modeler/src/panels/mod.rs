@@ -1,9 +1,11 @@
 //! Everything around the model view.
 
 mod bar;
+mod edit;
 mod history;
 mod parameters;
 pub(crate) mod recent;
+mod several;
 mod status;
 mod tree;
 

@@ -1,5 +1,6 @@
 //! The parameters of the selected node: its name, its colour, how it is combined, and all its numbers.
 
+use super::several;
 use super::tree::{operators, title};
 use crate::form::{Field, Form, Kind, numbers};
 use crate::modeler::Modeler;
@@ -20,8 +21,12 @@ struct Wish {
 /// Shows them.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     let Some(path) = modeler.bench.selected().cloned() else {
-        ui.strong("Nothing selected");
-        ui.weak("Tap a part of the model, or choose one in the tree.");
+        if modeler.bench.selection().is_empty() {
+            ui.strong("Nothing selected");
+            ui.weak("Tap a part of the model, or choose one in the tree.");
+        } else {
+            several::show(modeler, ui);
+        }
         return;
     };
     let Some(node) = path.find(&modeler.bench.shown().root).cloned() else { return };

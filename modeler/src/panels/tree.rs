@@ -1,6 +1,8 @@
 //! The tree: what the model is made of, to be selected, named, muted, coloured and moved about.
 
+use super::edit;
 use crate::modeler::Modeler;
+use crate::settings::Tool;
 use blobtree::{Color, Command, Node, NodePath, NodeRef, Operator, Shape, Sharpness, Warp};
 use egui::{Color32, Id, Response, RichText, ScrollArea, Sense, Ui, collapsing_header};
 
@@ -18,8 +20,12 @@ struct Dragged(NodePath);
 #[derive(Default)]
 struct Done {
     selected: Option<NodePath>,
+    /// Whether it is selected with what is selected.
+    too: bool,
     hovered: Option<NodePath>,
     command: Option<Command>,
+    /// What the menu does with all selected nodes.
+    act: Option<edit::Act>,
 }
 
 /// Shows it.
@@ -35,8 +41,13 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         }
     });
     modeler.hovered = done.hovered;
-    if let Some(path) = done.selected {
-        modeler.select(Some(path));
+    match done.selected {
+        Some(path) if done.too => modeler.select_too(path),
+        Some(path) => modeler.select(Some(path)),
+        None => {}
+    }
+    if let Some(act) = done.act {
+        act(modeler);
     }
     if let Some(command) = done.command {
         modeler.apply(command);
@@ -75,7 +86,7 @@ fn line(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &
 }
 
 fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &mut Done) {
-    let is_selected = modeler.bench.selected() == Some(path);
+    let is_selected = modeler.bench.selection().contains(path);
     let name = title(node);
     let mut text = RichText::new(&name);
     if !node.is_heard() {
@@ -91,10 +102,15 @@ fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &m
         done.hovered = Some(path.clone());
     }
     if button.clicked() {
-        done.selected = Some(path.clone());
+        let held = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+        (done.selected, done.too) = (Some(path.clone()), held || modeler.settings.tool == Tool::Select);
+    }
+    // Its menu is about all that is selected, so it is one of them.
+    if button.secondary_clicked() && !is_selected {
+        (done.selected, done.too) = (Some(path.clone()), false);
     }
     dropped(node, path, &button, ui, done);
-    button.context_menu(|ui| menu(ui, node, path, done));
+    button.context_menu(|ui| done.act = edit::parts(modeler, ui));
 }
 
 /// Takes in a node that is dropped on this one: an operator gets it as its last child, others as their neighbour.
@@ -116,30 +132,6 @@ fn dropped(node: &Node, path: &NodePath, button: &Response, ui: &Ui, done: &mut 
         _ => None,
     };
     done.command = place.map(|(parent, index)| Command::Move { from: dragged.0.clone(), parent, index });
-}
-
-fn menu(ui: &mut Ui, node: &Node, path: &NodePath, done: &mut Done) {
-    let mut item = |ui: &mut Ui, text: &str, command: Command| {
-        if ui.button(text).clicked() {
-            done.command = Some(command);
-            ui.close();
-        }
-    };
-    let (muted, construction) = (!node.muted, !node.construction);
-    item(ui, if muted { "Mute" } else { "Unmute" }, Command::SetMuted { path: path.clone(), muted });
-    let word = if construction { "Only to draw on" } else { "Part of the solid" };
-    item(ui, word, Command::SetConstruction { path: path.clone(), construction });
-    ui.menu_button("Put into", |ui| {
-        for (name, operator) in operators() {
-            item(ui, name, Command::WrapInOperator { path: path.clone(), operator });
-        }
-    });
-    if node.children().len() == 1 {
-        item(ui, "Take out of here", Command::Unwrap { path: path.clone() });
-    }
-    if !path.0.is_empty() {
-        item(ui, "Remove", Command::Remove { path: path.clone() });
-    }
 }
 
 /// The operators with the names that the user reads.

@@ -3,20 +3,17 @@
 use super::handles::Handle;
 use super::in_view;
 use super::knobs::{self, Knob, Turns};
+use super::{selecting, snapping};
 use crate::modeler::Modeler;
 use crate::pad::Around;
 use crate::settings::Tool;
 use crate::trace::Wait;
-use blobtree::{NodePath, Tree, pick};
 use egui::{Event, PointerButton, Response, Ui};
 use glam::Vec2;
 use sketch::stroke::PenSample;
 
 /// A press that moves less than this is a tap, points.
 const TAP: f32 = 4.0;
-
-/// A second tap within this distance of the first means the next node there, points.
-const SAME_PLACE: f32 = 8.0;
 
 /// How much a notch of the wheel enlarges, as a power of the scrolled points.
 const WHEEL: f32 = 0.0025;
@@ -31,7 +28,7 @@ pub enum Hold {
     Pen,
     /// The model.
     View(Tool),
-    /// A handle of the selected node, taken at a place of the view.
+    /// A handle of the selected nodes, taken at a place of the view.
     Handle(Handle, Vec2),
     /// A knob, taken at a place of the view, and its number then.
     Knob(Turns, Vec2, f32),
@@ -51,6 +48,7 @@ pub fn heed(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     }
     if !ui.input(|input| input.pointer.any_down()) {
         modeler.view.hold = Hold::Nothing;
+        modeler.view.guides.clear();
     }
 }
 
@@ -138,8 +136,10 @@ fn press(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     modeler.view.hold = match modeler.settings.tool {
         _ if space => Hold::View(Tool::Turn),
         tool @ (Tool::Turn | Tool::Pan) => Hold::View(tool),
-        Tool::Draw if let Some(knob) = Knob::at(modeler, at) => Hold::Knob(knob.turns, at, knob.value),
-        Tool::Draw if let Some(handle) = Handle::at(modeler, at) => Hold::Handle(handle, at),
+        Tool::Draw | Tool::Select if let Some(knob) = Knob::at(modeler, at) => {
+            Hold::Knob(knob.turns, at, knob.value)
+        }
+        Tool::Draw | Tool::Select if let Some(handle) = Handle::at(modeler, at) => Hold::Handle(handle, at),
         tool => {
             modeler.pad.begin(sample(at, ui), tool == Tool::Erase);
             Hold::Pen
@@ -177,23 +177,29 @@ fn pen(modeler: &mut Modeler, ui: &Ui, response: &Response) {
             Event::PointerButton { button: PointerButton::Primary, pressed: false, pos, .. } => {
                 let at = in_view(*pos, response);
                 modeler.pad.go_on(sample(at, ui));
-                lift(modeler);
+                lift(modeler, ui);
             }
             // The pen has left the world.
-            Event::PointerGone | Event::WindowFocused(false) => lift(modeler),
+            Event::PointerGone | Event::WindowFocused(false) => lift(modeler, ui),
             _ => {}
         }
     }
 }
 
-fn lift(modeler: &mut Modeler) {
+fn lift(modeler: &mut Modeler, ui: &Ui) {
     let Some(stroke) = modeler.pad.current() else { return };
     modeler.view.hold = Hold::Nothing;
     let start = stroke.samples[0].place();
     let is_tap = stroke.places().all(|place| place.distance(start) < TAP);
     if is_tap && !stroke.eraser {
         modeler.pad.drop_current();
-        tap(modeler, start);
+        selecting::tap(modeler, start, ui.input(|input| input.modifiers));
+        return;
+    }
+    if modeler.settings.tool == Tool::Select {
+        let places: Vec<Vec2> = stroke.places().collect();
+        modeler.pad.drop_current();
+        selecting::cross(modeler, places.into_iter());
         return;
     }
     let view = modeler.camera.view(modeler.view.screen);
@@ -204,35 +210,7 @@ fn lift(modeler: &mut Modeler) {
     modeler.stroked(stroked);
 }
 
-/// Selects what is below the pen; at the same place again, the next of those that made the surface there.
-fn tap(modeler: &mut Modeler, at: Vec2) {
-    let ray = modeler.camera.view(modeler.view.screen).ray(at);
-    let root = modeler.bench.scene().root.clone();
-    let Some(found) = pick(&root, &Tree::new(&root), ray.origin, ray.direction) else {
-        modeler.view.tapped = None;
-        modeler.select(None);
-        return;
-    };
-    let again = modeler.view.tapped.filter(|(before, _)| before.distance(at) < SAME_PLACE);
-    let turn = again.map_or(0, |(_, turn)| turn + 1) % found.contributors.len().max(1);
-    modeler.view.tapped = Some((at, turn));
-    modeler.select(found.contributors.get(turn).map(|(path, _)| outermost_warp(&root, path)));
-}
-
-/// The node, or the outermost of the warps that bend only it: what a person means who points at it.
-fn outermost_warp(root: &blobtree::NodeRef, path: &NodePath) -> NodePath {
-    let mut path = path.clone();
-    while let Some(parent) = path.parent() {
-        let is_warp = parent.find(root).is_some_and(|node| matches!(node.shape, blobtree::Shape::Warp(..)));
-        if !is_warp || parent.0.is_empty() {
-            break;
-        }
-        path = parent;
-    }
-    path
-}
-
-/// The corners on the screen of the box around the selected node, around which nothing else of it is.
+/// The corners on the screen of the box around the selected nodes, outside of which nothing of them is.
 fn selected_outline(modeler: &Modeler) -> Option<[Vec2; 4]> {
     let bounds = modeler.selected_box()?;
     let view = modeler.camera.view(modeler.view.screen);
@@ -248,9 +226,24 @@ fn handle_dragged(modeler: &mut Modeler, ui: &Ui, response: &Response, handle: H
     let Some(at) = ui.input(|input| input.pointer.latest_pos()) else { return };
     let let_go = ui.input(|input| input.pointer.primary_released());
     let at = in_view(at, response);
-    if let Some(motion) = handle.motion(modeler, from, at).filter(|_| from.distance(at) > 0.0) {
-        modeler.place(motion, let_go);
+    // Handles lie over parts: who only taps means those.
+    if from.distance(at) < TAP && !modeler.bench.is_dragged() {
+        if let_go {
+            selecting::tap(modeler, at, ui.input(|input| input.modifiers));
+        }
+        return;
     }
+    let motion = handle.motion(modeler, from, at);
+    let (Some(motion), Some(part)) = (motion, modeler.held_box()) else { return };
+    let is_free = !modeler.settings.snaps || ui.input(|input| input.modifiers.command);
+    let view = modeler.camera.view(modeler.view.screen);
+    let (motion, guides) = if is_free {
+        (motion, Vec::new())
+    } else {
+        snapping::snapped(motion, handle, &part, view.mm_per_px(view.depth(part.center())))
+    };
+    modeler.view.guides = guides;
+    modeler.place(motion, let_go);
 }
 
 /// A knob follows the hand.

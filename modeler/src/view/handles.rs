@@ -1,4 +1,4 @@
-//! Handles of the selected node: arrows to move it, rings to turn it, a square to size it. As large as a pen needs.
+//! Handles of what is selected: arrows to move it, rings to turn it, a square to size it. As large as a pen needs.
 
 use crate::modeler::Modeler;
 use crate::placing::Motion;
@@ -15,14 +15,11 @@ const ARROW: f32 = 84.0;
 /// The radius of a ring, points.
 const RING: f32 = 58.0;
 
+/// A ring is seen from its edge if its axis has less than this in the direction of the eye.
+const EDGE_ON: f32 = 0.12;
+
 /// Points of a ring.
 const RING_POINTS: u16 = 48;
-
-/// Moves end on multiples of this, mm, if they come within a quarter of it.
-const SNAP: f32 = 1.0;
-
-/// Turns end on multiples of this, degrees, if they come within a quarter of it.
-const SNAP_DEGREES: f32 = 15.0;
 
 /// A handle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,30 +34,38 @@ pub enum Handle {
     Middle,
 }
 
-/// Where the handles of the selected node are.
+/// Where the handles of the selected nodes are: one set for all of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Handles {
-    /// The middle of the node, mm.
+    /// The middle of the nodes, mm.
     pub middle: Vec3,
     /// A point of the screen there, mm.
     mm_per_point: f32,
+    /// From the eye to the middle, a unit vector.
+    sight: Vec3,
     view: View,
 }
 
 impl Handles {
-    /// Those of the selected node, as it is shown; none while a sketch is in the air.
+    /// Those of the selected nodes, as they are shown; none while a sketch is in the air.
     pub fn of(modeler: &Modeler) -> Option<Self> {
         if !modeler.pad.is_empty() {
             return None;
         }
         let middle = modeler.selected_box()?.center();
         let view = modeler.camera.view(modeler.view.screen);
-        view.screen_from_model(middle)?;
-        Some(Self { middle, mm_per_point: view.mm_per_px(view.depth(middle)), view })
+        let sight = view.ray(view.screen_from_model(middle)?).direction.normalize_or_zero();
+        Some(Self { middle, mm_per_point: view.mm_per_px(view.depth(middle)), sight, view })
     }
 
-    /// The line of a handle on the screen, in points of the view.
+    /// The line of a handle on the screen, in points of the view; empty for a ring seen from its edge, with which
+    /// nothing can be turned.
     pub fn line(&self, handle: Handle) -> Vec<Vec2> {
+        if let Handle::Ring(axis) = handle
+            && Vec3::AXES[axis].dot(self.sight).abs() < EDGE_ON
+        {
+            return Vec::new();
+        }
         let places: Vec<Vec3> = match handle {
             Handle::Arrow(axis) => {
                 vec![self.middle, self.middle + Vec3::AXES[axis] * ARROW * self.mm_per_point]
@@ -113,8 +118,11 @@ impl Handle {
     pub fn at(modeler: &Modeler, at: Vec2) -> Option<Self> {
         let handles = Handles::of(modeler)?;
         let reached = ALL.into_iter().map(|handle| (handles.distance(handle, at), handle));
-        let reached = reached.filter(|(distance, _)| *distance < REACH);
-        reached.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, handle)| handle)
+        let reached: Vec<_> = reached.filter(|(distance, _)| *distance < REACH).collect();
+        // Arrows and rings may pass over the dot and the square, which are small.
+        let small = reached.iter().find(|(_, handle)| matches!(handle, Self::Middle | Self::Square));
+        let nearest = || reached.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        small.or_else(nearest).map(|(_, handle)| *handle)
     }
 
     /// Its colour: red, green and blue for x, y and z.
@@ -129,7 +137,7 @@ impl Handle {
 
     /// What a drag with it from one place of the view to another does. The handles are where the node was before.
     pub fn motion(self, modeler: &Modeler, from: Vec2, to: Vec2) -> Option<Motion> {
-        let middle = modeler.held_middle()?;
+        let middle = modeler.held_box()?.center();
         let view = modeler.camera.view(modeler.view.screen);
         let mm = view.mm_per_px(view.depth(middle));
         Some(match self {
@@ -143,18 +151,14 @@ impl Handle {
                 // An axis towards the eye would run away.
                 let shortening = along.length().max(0.15);
                 let by = (to - from).dot(along / shortening) * mm / shortening;
-                Motion::Move(axis * snapped(by, SNAP))
+                Motion::Move(axis * by)
             }
             Self::Ring(axis) => {
                 let center = view.screen_from_model(middle)?;
                 let (a, b) = (from - center, to - center);
                 let towards_eye = Vec3::AXES[axis].dot(view.forward) < 0.0;
                 let degrees = a.angle_to(b).to_degrees() * if towards_eye { -1.0 } else { 1.0 };
-                Motion::Turn {
-                    about: middle,
-                    axis: Vec3::AXES[axis],
-                    degrees: snapped(degrees, SNAP_DEGREES),
-                }
+                Motion::Turn { about: middle, axis: Vec3::AXES[axis], degrees }
             }
             Self::Square => {
                 let center = view.screen_from_model(middle)?;
@@ -163,12 +167,6 @@ impl Handle {
             }
         })
     }
-}
-
-/// The nearest multiple of a step, if it is near.
-fn snapped(value: f32, step: f32) -> f32 {
-    let near = (value / step).round() * step;
-    if (value - near).abs() < 0.25 * step { near } else { value }
 }
 
 fn distance_to_segment(p: Vec2, a: Vec2, b: Vec2) -> f32 {

@@ -6,6 +6,8 @@ mod knobs;
 mod lens;
 mod overlay;
 mod pictures;
+mod selecting;
+mod snapping;
 
 use crate::ground;
 use crate::modeler::Modeler;
@@ -29,6 +31,8 @@ pub struct ViewState {
     pub(super) pictures: pictures::Pictures,
     /// What the hand holds.
     pub(super) hold: hand::Hold,
+    /// On what the dragged parts rest.
+    pub(crate) guides: Vec<snapping::Guide>,
     /// Fingers that touch together.
     pub(super) fingers: Option<hand::Fingers>,
     /// The last tap: where, and which of the nodes there it selected.

@@ -3,7 +3,7 @@
 use super::hand::Hold;
 use super::handles::{ALL, Handle, Handles};
 use super::knobs::{self, Knob, Turns};
-use super::{in_view, on_screen};
+use super::{in_view, on_screen, snapping};
 use crate::camera::Side;
 use crate::expecting;
 use crate::modeler::Modeler;
@@ -37,14 +37,15 @@ const GAP: f32 = 18.0;
 pub fn show(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
     let painter = ui.painter_at(response.rect);
     let view = modeler.camera.view(modeler.view.screen);
-    let selected = modeler.selected_box().map(|bounds| (bounds, Color32::from_rgb(240, 170, 40)));
-    let hovered = modeler.hovered_box().map(|bounds| (bounds, Color32::from_rgb(90, 150, 230)));
     // A sketch in the air has the view for itself.
     if modeler.pad.is_empty() {
-        for (bounds, color) in [selected, hovered].into_iter().flatten() {
+        let selected = modeler.selected_boxes().map(|bounds| (bounds, Color32::from_rgb(240, 170, 40)));
+        let hovered = modeler.hovered_box().map(|bounds| (bounds, Color32::from_rgb(90, 150, 230)));
+        for (bounds, color) in selected.chain(hovered) {
             paint_box(&painter, &within(&bounds, &modeler.bounds()), &view, response, color);
         }
         paint_handles(modeler, &painter, response);
+        snapping::paint(modeler, &painter, &view, response);
     }
     super::lens::show(modeler, ui, &view, response);
     paint_ghost_plane(modeler, &painter, &view, response);
@@ -98,6 +99,7 @@ fn paint_handles(modeler: &Modeler, painter: &Painter, response: &Response) {
             (Handle::Middle, [at]) => {
                 painter.circle_filled(*at, if held == Some(handle) { 9.0 } else { 7.0 }, handle.color());
             }
+            (_, []) => {}
             (_, many) => {
                 painter.line(many.to_vec(), Stroke::new(width, handle.color().gamma_multiply(0.8)));
             }

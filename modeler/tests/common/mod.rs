@@ -139,3 +139,22 @@ pub fn press(screen: &mut Screen, name: &str) {
     screen.get_by_label(name).click();
     settle(screen);
 }
+
+/// Puts a scene on the table.
+pub fn put(screen: &mut Screen, root: impl Into<blobtree::NodeRef>) {
+    screen.state_mut().put(Scene::new(root), None);
+    settle(screen);
+}
+
+/// Where a place of the model is on the screen.
+pub fn seen(screen: &Screen, place: impl Into<glam::Vec3>) -> Pos2 {
+    let rect = screen.get_by_label("Model view").rect();
+    let view = screen.state().camera.view(glam::Vec2::new(rect.width(), rect.height()));
+    let at = view.screen_from_model(place.into()).expect("before the eye");
+    rect.min + egui::vec2(at.x, at.y)
+}
+
+/// Drags with the pen from one place to another, in steps, while the model follows.
+pub fn drag(screen: &mut Screen, from: Pos2, by: egui::Vec2) {
+    draw(screen, (0..=10).map(|i| from + by * (i as f32 / 10.0)));
+}

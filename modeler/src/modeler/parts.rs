@@ -1,0 +1,142 @@
+//! What is done to the selected parts: one of them or several, always as one step.
+
+use super::Modeler;
+use crate::placing::{self, Motion};
+use crate::several;
+use blobtree::{Aabb, Command, NodePath, Operator};
+use glam::Vec3;
+
+/// Why a part cannot have a copy.
+const NOTHING_BESIDE: &str = "Only parts of a union, a blend or a cut can have a copy beside them.";
+
+impl Modeler {
+    /// Selects a node, or nothing.
+    pub fn select(&mut self, path: Option<NodePath>) {
+        self.select_all(path);
+    }
+
+    /// Selects these nodes.
+    pub fn select_all(&mut self, paths: impl IntoIterator<Item = NodePath>) {
+        self.bench.select_all(paths);
+        self.selected_by_hand();
+    }
+
+    /// Selects a node with those that are selected, or no longer.
+    pub fn select_too(&mut self, path: NodePath) {
+        self.bench.select_too(path);
+        self.selected_by_hand();
+    }
+
+    fn selected_by_hand(&mut self) {
+        self.selected_by_hand = true;
+        self.think();
+    }
+
+    /// Selects the parent of what is selected, or what holds all selected parts; above the root, nothing.
+    pub fn select_parent(&mut self) {
+        self.select(several::parent(self.bench.selection()));
+    }
+
+    /// Around the solids of all selected nodes, as they are shown, mm; none without any.
+    pub fn selected_box(&self) -> Option<Aabb> {
+        self.selected_boxes().reduce(|all, one| all.union(&one))
+    }
+
+    /// Around the solid of each selected node, as it is shown, mm.
+    pub(crate) fn selected_boxes(&self) -> impl Iterator<Item = Aabb> {
+        self.boxes.iter().filter_map(|known| known.solid)
+    }
+
+    /// Takes away what is selected.
+    pub fn remove_selected(&mut self) {
+        if let Some(command) = several::remove(&self.bench.scene().root, self.bench.selection()) {
+            self.bench.select(None);
+            self.apply(command);
+        }
+    }
+
+    /// Puts a copy of what is selected beside it, and selects the copies.
+    pub fn duplicate_selected(&mut self) {
+        let found = several::duplicate(&self.bench.scene().root, self.bench.selection());
+        self.put_beside(found);
+    }
+
+    /// Puts a mirrored copy of what is selected on the other side of the middle, and selects the copies.
+    pub fn mirror_selected(&mut self) {
+        let root = &self.bench.scene().root;
+        let found = several::beside(root, self.bench.selection(), |path| placing::mirrored(root, path));
+        self.put_beside(found);
+    }
+
+    fn put_beside(&mut self, found: Option<(Command, Vec<NodePath>)>) {
+        match found {
+            Some((command, copies)) => {
+                if self.apply(command) {
+                    self.bench.select_all(copies);
+                }
+            }
+            None if self.bench.selection().is_empty() => {}
+            None => self.notices.tell(NOTHING_BESIDE),
+        }
+    }
+
+    /// Puts what is selected on the ground. Several parts keep their places to each other.
+    pub fn ground_selected(&mut self) {
+        if let Some(bounds) = self.selected_box() {
+            self.place(Motion::Move(Vec3::new(0.0, 0.0, -bounds.min.z)), true);
+        }
+    }
+
+    /// Mutes what is selected; if all of it is muted, lets it be heard.
+    pub fn mute_selected(&mut self) {
+        let root = &self.bench.scene().root;
+        let is_muted = |path: &NodePath| path.find(root).is_some_and(|node| node.muted);
+        let muted = !self.bench.selection().iter().all(is_muted);
+        self.each_selected(|path| Command::SetMuted { path, muted });
+    }
+
+    /// Makes what is selected something to draw on only; if all of it is, part of the solid again.
+    pub fn construct_selected(&mut self) {
+        let root = &self.bench.scene().root;
+        let is_one = |path: &NodePath| path.find(root).is_some_and(|node| node.construction);
+        let construction = !self.bench.selection().iter().all(is_one);
+        self.each_selected(|path| Command::SetConstruction { path, construction });
+    }
+
+    /// Does the same to each selected node, as one step.
+    pub(crate) fn each_selected(&mut self, command: impl Fn(NodePath) -> Command) {
+        let commands: Vec<Command> = self.bench.selection().iter().cloned().map(command).collect();
+        if let Some(command) = several::together(commands) {
+            self.apply(command);
+        }
+    }
+
+    /// Puts what is selected into one operator, and selects that.
+    pub fn group_selected(&mut self, operator: Operator) {
+        match several::group(&self.bench.scene().root, self.bench.selection(), operator) {
+            Some((command, place)) => {
+                if self.apply(command) {
+                    self.bench.select(Some(place));
+                }
+            }
+            None if self.bench.selection().is_empty() => {}
+            None => {
+                self.notices.tell("Only parts that the same moves, turns and twists hold can become one.");
+            }
+        }
+    }
+
+    /// Shows what is selected moved, or moves it if the hand has let go.
+    pub(crate) fn place(&mut self, motion: Motion, let_go: bool) {
+        let root = &self.bench.scene().root;
+        let moves = self.bench.selection().iter().map(|path| placing::command(root, path, motion));
+        match moves.collect::<Option<Vec<_>>>() {
+            Some(moves) => {
+                if let Some(command) = several::together(moves) {
+                    self.try_out(command, let_go);
+                }
+            }
+            None => self.notices.tell("What is inside a twist, a taper or a bend cannot be moved by hand."),
+        }
+    }
+}
