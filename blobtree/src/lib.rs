@@ -109,6 +109,7 @@ mod imported;
 mod leaf;
 mod node;
 mod operator;
+mod owners;
 mod palette;
 mod pick;
 mod primitive;
@@ -135,6 +136,7 @@ pub use field_picture::FieldPicture;
 pub use imported::ImportedMesh;
 pub use node::{Color, Node, NodePath, NodePathError, NodeRef, Shape};
 pub use operator::{Operator, Sharpness};
+pub use owners::{OwnerFinder, Owners};
 pub use palette::{Painter, Palette, STONE};
 pub use pick::{Hit, Pick, cast_ray, pick};
 pub use primitive::{

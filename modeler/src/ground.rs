@@ -13,7 +13,8 @@ pub fn lines(settings: &Settings, dark: bool) -> Vec<Line> {
         return Vec::new();
     }
     let tone = if dark { 255 } else { 40 };
-    let line = |from: [f32; 3], to: [f32; 3], color| Line { ends: [from.into(), to.into()], color };
+    let line =
+        |from: [f32; 3], to: [f32; 3], color| Line { ends: [from.into(), to.into()], color, width: 1.0 };
     let gray = |share: u8| [tone, tone, tone, share];
     let [width, depth, height] = settings.room;
     let (x, y) = (0.5 * width, 0.5 * depth);
@@ -32,9 +33,9 @@ pub fn lines(settings: &Settings, dark: bool) -> Vec<Line> {
     let up = Vec3::Z * height;
     for (i, &corner) in corners.iter().enumerate() {
         let next = corners[(i + 1) % corners.len()];
-        lines.push(Line { ends: [corner, next], color: gray(110) });
-        lines.push(Line { ends: [corner, corner + up], color: gray(22) });
-        lines.push(Line { ends: [corner + up, next + up], color: gray(22) });
+        lines.push(Line { ends: [corner, next], color: gray(110), width: 1.0 });
+        lines.push(Line { ends: [corner, corner + up], color: gray(22), width: 1.0 });
+        lines.push(Line { ends: [corner + up, next + up], color: gray(22), width: 1.0 });
     }
     lines
 }

@@ -29,6 +29,8 @@ pub mod notices;
 pub mod pad;
 mod panels;
 pub mod placing;
+mod pointing;
+pub mod seams;
 pub mod settings;
 pub mod several;
 pub mod solid;

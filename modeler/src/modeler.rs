@@ -20,6 +20,7 @@ use crate::node_box::NodeBox;
 use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
 use crate::panels;
+use crate::pointing::Pointing;
 use crate::settings::{Settings, Theme};
 use crate::solid::{Asking, Solid, SolidMaker};
 use crate::stage::Stage;
@@ -69,8 +70,10 @@ pub struct Modeler {
     /// Why the next solid is asked for.
     asking: Asking,
     pub(crate) view: ViewState,
-    /// The node that the pointer is over, in the tree or in the view.
+    /// The node that the pointer is over in the tree.
     pub(crate) hovered: Option<NodePath>,
+    /// The part that the pointer is over in the view.
+    pub(crate) pointing: Pointing,
     /// Where the selected nodes are.
     boxes: Vec<NodeBox>,
     hovered_box: NodeBox,
@@ -82,8 +85,8 @@ pub struct Modeler {
     waiting: Option<PathBuf>,
     solids: SolidMaker,
     solid: Option<Arc<Solid>>,
-    /// The tree of which the solid was asked for last.
-    asked: Option<NodeRef>,
+    /// The tree of which the solid was asked for last, and whether with its seams.
+    asked: Option<(NodeRef, bool)>,
     thinker: Thinker,
     /// Called when a background thread has something to show.
     wake: Arc<dyn Fn() + Send + Sync>,
@@ -127,6 +130,7 @@ impl Modeler {
             asking: Asking::Other,
             view: ViewState::default(),
             hovered: None,
+            pointing: Pointing::start(wake.clone())?,
             boxes: Vec::new(),
             hovered_box: NodeBox::default(),
             held_box: None,
@@ -211,14 +215,20 @@ impl Modeler {
     pub fn is_at_rest(&self) -> bool {
         let is_newest = |found| self.thinker.is_newest(found);
         let sketched = self.pad.sketch().is_empty() || self.pad.expectations.as_ref().is_some_and(is_newest);
-        let asked = self.asked.as_ref().is_some_and(|root| NodeRef::ptr_eq(root, &self.bench.shown().root));
+        let asked = self.is_asked();
         let seen = self.lens.as_ref().is_none_or(Lens::is_at_rest);
-        sketched && asked && seen && self.errands.is_empty() && self.solids.is_done(self.solid.as_deref())
+        let looked = seen && self.pointing.is_at_rest();
+        sketched && asked && looked && self.errands.is_empty() && self.solids.is_done(self.solid.as_deref())
     }
 
     /// The knobs in the view: what they say, and where they are, in points of the view.
     pub fn knobs(&self) -> Vec<(String, glam::Vec2)> {
         view::knobs(self)
+    }
+
+    /// The part that the pointer is over in the view.
+    pub fn pointed(&self) -> Option<&NodePath> {
+        self.pointing.found()
     }
 
     /// On what the dragged parts rest: "on the bed, z = 0".
@@ -250,6 +260,7 @@ impl Modeler {
         if let Some(lens) = &mut self.lens {
             lens.hear();
         }
+        self.pointing.hear();
         let thoughts: Vec<_> = self.thinker.thoughts().collect();
         for thought in thoughts {
             if let Thought::Expectations(found) = &thought {
@@ -283,13 +294,21 @@ impl Modeler {
         self.hovered_box.solid
     }
 
+    /// Whether the solid that is to be shown was asked for.
+    fn is_asked(&self) -> bool {
+        let is_same = |(root, seams): &(NodeRef, bool)| {
+            NodeRef::ptr_eq(root, &self.bench.shown().root) && *seams == self.settings.shows_seams
+        };
+        self.asked.as_ref().is_some_and(is_same)
+    }
+
     /// Asks the background threads for what has changed.
     fn ask(&mut self) {
-        let root = &self.bench.shown().root;
-        if self.asked.as_ref().is_none_or(|asked| !NodeRef::ptr_eq(asked, root)) {
-            self.asked = Some(root.clone());
+        if !self.is_asked() {
+            let (root, seams) = (&self.bench.shown().root, self.settings.shows_seams);
+            self.asked = Some((root.clone(), seams));
             let asking = if self.bench.is_dragged() { Asking::Drag } else { self.asking };
-            self.solids.ask(root, asking, self.now);
+            self.solids.ask(root, seams, asking, self.now);
             self.asking = Asking::Other;
         }
         let bounds = self.bounds();

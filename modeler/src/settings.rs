@@ -157,6 +157,8 @@ pub struct Settings {
     pub shows_overhang: bool,
     /// From where on it is tinted, degrees from the vertical.
     pub overhang: f32,
+    /// Whether lines on the model show where parts meet.
+    pub shows_seams: bool,
     /// Whether the ground is shown.
     pub shows_ground: bool,
     /// The printer's room, mm.
@@ -181,6 +183,7 @@ impl Default for Settings {
             look: Look::Shaded,
             shows_overhang: false,
             overhang: 45.0,
+            shows_seams: true,
             shows_ground: true,
             room: [220.0, 220.0, 250.0],
             snaps: true,

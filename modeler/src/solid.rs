@@ -5,7 +5,9 @@
 
 use crate::desk::Bake;
 use crate::newest::{Answering, Newest};
-use blobtree::{Aabb, BakeStore, ChangedPlaces, Field, NodeRef, Palette, Tree};
+use crate::seams::{Ground, seams};
+use crate::stage::Line;
+use blobtree::{Aabb, BakeStore, ChangedPlaces, Field, NodeRef, Owners, Palette, Tree};
 use glam::Vec3;
 use polygonizer::{Cancel, CellSize, Options, Surface, VertexKind};
 use rayon::prelude::*;
@@ -55,6 +57,8 @@ pub struct Solid {
     pub version: u64,
     /// Three for each triangle, counter-clockwise seen from outside.
     pub corners: Vec<Corner>,
+    /// Where one part ends and another begins, if that was asked for.
+    pub seams: Vec<Line>,
     /// Around it, mm; empty without any.
     pub bounds: Aabb,
     /// The size of its cells, mm.
@@ -76,6 +80,7 @@ pub struct Solid {
 struct Question {
     version: u64,
     root: NodeRef,
+    has_seams: bool,
     asking: Asking,
     asked: Instant,
 }
@@ -107,10 +112,11 @@ impl SolidMaker {
         Ok(Self { worker, asked: 0, first: 0 })
     }
 
-    /// Asks for the solid of a tree, in a frame that began `now`; returns its version.
-    pub fn ask(&mut self, root: &NodeRef, asking: Asking, now: Instant) -> u64 {
+    /// Asks for the solid of a tree, with its seams or without, in a frame that began `now`; returns its version.
+    pub fn ask(&mut self, root: &NodeRef, has_seams: bool, asking: Asking, now: Instant) -> u64 {
         self.asked += 1;
-        self.worker.ask(Question { version: self.asked, root: root.clone(), asking, asked: now });
+        let root = root.clone();
+        self.worker.ask(Question { version: self.asked, root, has_seams, asking, asked: now });
         self.asked
     }
 
@@ -150,7 +156,7 @@ impl Maker {
     fn make(&mut self, question: &Question, answering: &Answering<Solid>) {
         let mut began = Instant::now();
         let tree = Tree::new(&question.root);
-        let palette = Palette::new(&question.root, &BakeStore::new());
+        let paint = Paint::new(&question.root, question.has_seams, &BakeStore::new());
         if self.extent.is_empty() {
             self.extent = tree.support();
         }
@@ -158,7 +164,7 @@ impl Maker {
         let Some(surface) = coarse.follow(&question.root, &tree, self.extent, &answering.closed) else {
             return;
         };
-        let drawn = draw(surface, &palette, question, false);
+        let drawn = draw(surface, &paint, question, false);
         self.extent = drawn.bounds;
         let unconstrained = tree.unconstrained();
         answering.give_late(Solid { unconstrained, took: began.elapsed(), ..drawn });
@@ -172,18 +178,18 @@ impl Maker {
             // A change below such a node may change all of it, so its surface is made anew.
             fine.surface = None;
             let tree = self.bakes.compile(&question.root);
-            let palette = Palette::new(&question.root, &self.bakes);
+            let paint = Paint::new(&question.root, question.has_seams, &self.bakes);
             let Some(cell) = fine.cell(self.extent) else { return };
             let options = Options { cancel: Some(&answering.cancel), ..Options::default() };
             let Ok(surface) = Surface::build(&tree, cell, &options) else { return };
-            let drawn = draw(&surface, &palette, question, true);
+            let drawn = draw(&surface, &paint, question, true);
             answering.give(Solid { unconstrained: tree.unconstrained(), took: began.elapsed(), ..drawn });
             return;
         }
         let Some(surface) = fine.follow(&question.root, &tree, self.extent, &answering.cancel) else {
             return;
         };
-        let drawn = draw(surface, &palette, question, true);
+        let drawn = draw(surface, &paint, question, true);
         self.extent = drawn.bounds;
         answering.give(Solid { unconstrained, took: began.elapsed(), ..drawn });
     }
@@ -233,14 +239,34 @@ impl Level {
     }
 }
 
-fn draw(surface: &Surface, palette: &Palette, question: &Question, is_fine: bool) -> Solid {
+/// What is drawn on a surface.
+struct Paint {
+    palette: Palette,
+    owners: Option<Owners>,
+}
+
+impl Paint {
+    fn new(root: &NodeRef, has_seams: bool, bakes: &BakeStore) -> Self {
+        let owners = has_seams.then(|| Owners::new(root, bakes));
+        Self { palette: Palette::new(root, bakes), owners }
+    }
+}
+
+fn draw(surface: &Surface, paint: &Paint, question: &Question, is_fine: bool) -> Solid {
     let (mesh, normals, kinds) = (surface.mesh(), surface.normals(), surface.kinds());
     let colors: Vec<[u8; 3]> = mesh
         .positions
         .par_chunks(TOGETHER)
-        .map_init(|| palette.painter(), |painter, points| painter.colors(points))
+        .map_init(|| paint.palette.painter(), |painter, points| painter.colors(points))
         .flatten_iter()
         .collect();
+    let ground = Ground {
+        positions: &mesh.positions,
+        normals: &normals,
+        triangles: &mesh.triangles,
+        cell: surface.cell().mm(),
+    };
+    let seams = paint.owners.as_ref().map(|owners| seams(&question.root, owners, ground));
     let level = u8::from(is_fine);
     let corners = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
@@ -260,6 +286,7 @@ fn draw(surface: &Surface, palette: &Palette, question: &Question, is_fine: bool
     Solid {
         version: question.version,
         corners: mesh.triangles.par_iter().flat_map_iter(corners).collect(),
+        seams: seams.unwrap_or_default(),
         bounds: Aabb::of_points(mesh.positions.iter().copied()),
         cell: surface.cell().mm(),
         is_fine,
@@ -291,13 +318,13 @@ mod tests {
     fn a_solid_that_follows_a_drag_is_the_one_that_is_made_anew() {
         let two = |x: f32| -> NodeRef { union([point([0., 0., 10.], 10.), point([x, 0., 10.], 8.)]).into() };
         let mut following = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
-        let first = following.ask(&two(12.0), Asking::Other, Instant::now());
+        let first = following.ask(&two(12.0), true, Asking::Other, Instant::now());
         fine(&mut following, first);
         let after = two(13.0);
-        let version = following.ask(&after, Asking::Drag, Instant::now());
+        let version = following.ask(&after, true, Asking::Drag, Instant::now());
         let followed = fine(&mut following, version);
         let mut anew = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
-        let version = anew.ask(&after, Asking::Other, Instant::now());
+        let version = anew.ask(&after, true, Asking::Other, Instant::now());
         let made = fine(&mut anew, version);
         // The cells were chosen for the solid before the drag.
         let ends = |solid: &Solid| [solid.bounds.min, solid.bounds.max];
@@ -315,7 +342,7 @@ mod tests {
         // A new place every millisecond, which is less than any solid takes.
         for step in 0_u16.. {
             assert!(Instant::now() < until, "{shown} solids in {step} steps");
-            maker.ask(&at(0.01 * f32::from(step)), Asking::Drag, Instant::now());
+            maker.ask(&at(0.01 * f32::from(step)), true, Asking::Drag, Instant::now());
             shown += usize::from(maker.ready().is_some());
             if shown == 5 {
                 break;
@@ -328,7 +355,7 @@ mod tests {
     fn nothing_is_drawn_of_an_empty_page() {
         let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
         let version =
-            maker.ask(&crate::workbench::Workbench::empty_page().root, Asking::Other, Instant::now());
+            maker.ask(&crate::workbench::Workbench::empty_page().root, true, Asking::Other, Instant::now());
         let solid = fine(&mut maker, version);
         assert!(solid.corners.is_empty() && solid.bounds.is_empty());
     }

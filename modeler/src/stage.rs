@@ -42,6 +42,8 @@ pub struct Line {
     pub ends: [Vec3; 2],
     /// sRGB and how much it covers.
     pub color: [u8; 4],
+    /// Points.
+    pub width: f32,
 }
 
 /// A picture of the model.

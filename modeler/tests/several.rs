@@ -228,3 +228,28 @@ fn what_is_dragged_near_the_bed_or_the_mirror_plane_rests_there_unless_it_is_let
     drag(&mut screen, from, by);
     assert!((middle_of(&screen).x - 0.5).abs() < 0.2, "{}", middle_of(&screen));
 }
+
+#[test]
+fn the_part_under_the_pointer_in_the_view_is_known_to_the_tree() {
+    let mut screen = balls();
+    let place = seen(&screen, PLACES[2]);
+    screen.hover_at(place);
+    settle(&mut screen);
+    assert_eq!(screen.state().pointed(), Some(&paths(&["/2"])[0]));
+    let place = nowhere(&screen);
+    screen.hover_at(place);
+    settle(&mut screen);
+    assert_eq!(screen.state().pointed(), None);
+}
+
+#[test]
+fn seams_are_made_where_parts_meet_and_only_if_they_are_wanted() {
+    let mut screen = screen(None);
+    let ball = |x: f32| point([x, 0., 10.], 10.);
+    put(&mut screen, blobtree::build::blend([ball(-8.), ball(8.)]));
+    let seams = |screen: &Screen| screen.state().solid().expect("a solid").seams.len();
+    assert!(seams(&screen) > 100, "{}", seams(&screen));
+    press(&mut screen, "View");
+    press(&mut screen, "Seams between parts");
+    assert_eq!(seams(&screen), 0);
+}

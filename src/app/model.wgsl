@@ -6,6 +6,8 @@ struct Uniforms {
     // Where the light comes from; w is the sine of the lean from which on it is tinted.
     key: vec4f,
     background: vec4f,
+    // The size of the picture, in x and y.
+    pixels: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> u: Uniforms;
@@ -27,9 +29,34 @@ struct End {
     @location(0) color: vec4f,
 }
 
+// The end of a line, or the place on it nearest to this end that is before the eye.
+fn before_eye(end: vec4f, other: vec4f) -> vec4f {
+    let near = 1e-3;
+    if end.w >= near || other.w <= end.w {
+        return end;
+    }
+    return mix(end, other, (near - end.w) / (other.w - end.w));
+}
+
+// One of the four corners of a line as a strip, so many pixels wide.
 @vertex
-fn line(@location(0) position: vec3f, @location(1) color: vec4f) -> End {
-    return End(u.clip_from_world * vec4f(position, 1.0), color);
+fn line(
+    @builtin(vertex_index) corner: u32,
+    @location(0) first: vec3f,
+    @location(1) last: vec3f,
+    @location(2) color: vec4f,
+    @location(3) width: f32,
+) -> End {
+    let first_clip = u.clip_from_world * vec4f(first, 1.0);
+    let last_clip = u.clip_from_world * vec4f(last, 1.0);
+    let a = before_eye(first_clip, last_clip);
+    let b = before_eye(last_clip, first_clip);
+    let along = (b.xy / b.w - a.xy / a.w) * u.pixels.xy;
+    let across = vec2f(-along.y, along.x) / max(length(along), 1e-6);
+    let side = select(-1.0, 1.0, (corner & 2u) != 0u);
+    var clip = select(a, b, (corner & 1u) != 0u);
+    clip += vec4f(across * (side * width) / u.pixels.xy * clip.w, 0.0, 0.0);
+    return End(clip, color);
 }
 
 @fragment

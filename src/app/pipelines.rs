@@ -21,6 +21,8 @@ pub struct Uniforms {
     pub key: [f32; 4],
     /// sRGB.
     pub background: [f32; 4],
+    /// The size of the picture, in the first two.
+    pub pixels: [f32; 4],
 }
 
 /// What is to be drawn, and where.
@@ -37,7 +39,7 @@ pub struct Work<'a> {
     pub solid: Option<(&'a wgpu::Buffer, u32)>,
     /// How the solid is drawn.
     pub look: Look,
-    /// Ends of lines, and how many.
+    /// Lines, and how many.
     pub lines: Option<(wgpu::Buffer, u32)>,
 }
 
@@ -61,13 +63,18 @@ struct Kind {
     attributes: &'static [wgpu::VertexAttribute],
     stride: u64,
     topology: wgpu::PrimitiveTopology,
+    step: wgpu::VertexStepMode,
     /// Whether it mixes with what is behind and hides nothing.
     mixes: bool,
 }
 
 const CORNER: [wgpu::VertexAttribute; 3] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4];
-const END: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4];
+const LINE: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4, 3 => Float32];
+
+/// The size of a line in its buffer: both ends, the colour and the width in pixels.
+pub const LINE_BYTES: usize = 32;
 
 impl Pipelines {
     /// Makes them.
@@ -103,14 +110,16 @@ impl Pipelines {
             attributes: &CORNER,
             stride: 28,
             topology: wgpu::PrimitiveTopology::TriangleList,
+            step: wgpu::VertexStepMode::Vertex,
             mixes,
         };
         let lines = Kind {
             vertex: "line",
             fragment: "ink",
-            attributes: &END,
-            stride: 16,
-            topology: wgpu::PrimitiveTopology::LineList,
+            attributes: &LINE,
+            stride: LINE_BYTES as u64,
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            step: wgpu::VertexStepMode::Instance,
             mixes: true,
         };
         let make = |kind: &Kind| pipeline(device, &shader, &layout, samples, kind);
@@ -155,10 +164,10 @@ impl Pipelines {
             multiview_mask: None,
         });
         pass.set_bind_group(0, &self.bound, &[]);
-        let mut one = |pipeline: &wgpu::RenderPipeline, buffer: &wgpu::Buffer, count: u32| {
+        let mut one = |pipeline: &wgpu::RenderPipeline, buffer: &wgpu::Buffer, corners, instances| {
             pass.set_pipeline(pipeline);
             pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..count, 0..1);
+            pass.draw(0..corners, 0..instances);
         };
         let (look, mixes) = match work.look {
             Look::Shaded => (&self.shaded, false),
@@ -168,13 +177,14 @@ impl Pipelines {
         };
         // What hides comes before lines, what mixes after them.
         if let Some((buffer, count)) = work.solid.filter(|_| !mixes) {
-            one(look, buffer, count);
+            one(look, buffer, count, 1);
         }
         if let Some((buffer, count)) = &work.lines {
-            one(&self.lines, buffer, *count);
+            // Each line is a strip of two triangles.
+            one(&self.lines, buffer, 4, *count);
         }
         if let Some((buffer, count)) = work.solid.filter(|_| mixes) {
-            one(look, buffer, count);
+            one(look, buffer, count, 1);
         }
         drop(pass);
         queue.submit([encoder.finish()]);
@@ -195,7 +205,7 @@ fn pipeline(
     });
     let buffer = wgpu::VertexBufferLayout {
         array_stride: kind.stride,
-        step_mode: wgpu::VertexStepMode::Vertex,
+        step_mode: kind.step,
         attributes: kind.attributes,
     };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

@@ -1,6 +1,6 @@
 //! The graphics card: draws pictures of the model into a texture, which the view shows.
 
-use super::pipelines::{COLOR, DEPTH, Pipelines, Uniforms};
+use super::pipelines::{COLOR, DEPTH, LINE_BYTES, Pipelines, Uniforms};
 use eframe::egui::TextureId;
 use egui_wgpu::RenderState;
 use glam::{Mat4, Vec3, Vec4};
@@ -108,6 +108,20 @@ fn corner_bytes(solid: &Solid) -> Vec<u8> {
     bytes
 }
 
+/// The lines as the card takes them: 32 bytes each, with widths in pixels.
+fn line_bytes(picture: &Picture) -> Vec<u8> {
+    let scale = picture.pixels[0] as f32 / picture.view.screen.x.max(1.0);
+    let mut bytes = Vec::with_capacity(LINE_BYTES * picture.lines.len());
+    for line in picture.lines {
+        for end in line.ends {
+            bytes.extend_from_slice(bytemuck::cast_slice(&end.to_array()));
+        }
+        bytes.extend_from_slice(&line.color);
+        bytes.extend_from_slice(bytemuck::bytes_of(&(line.width * scale).max(1.0)));
+    }
+    bytes
+}
+
 /// A buffer of vertices; none if the card takes none as large.
 fn buffer(device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> Option<wgpu::Buffer> {
     let size = (bytes.len() as u64).next_multiple_of(4);
@@ -189,6 +203,7 @@ fn uniforms(picture: &Picture) -> Uniforms {
         eye: toward_eye.to_array(),
         key: key.extend(lean).to_array(),
         background: [r, g, b, 1.0],
+        pixels: [picture.pixels[0] as f32, picture.pixels[1] as f32, 0.0, 0.0],
     }
 }
 
@@ -197,13 +212,7 @@ impl Stage for Card {
         self.fit(picture.pixels);
         self.load(picture.solid);
         let uniforms = uniforms(picture);
-        let mut lines = Vec::with_capacity(32 * picture.lines.len());
-        for line in picture.lines {
-            for end in line.ends {
-                lines.extend_from_slice(bytemuck::cast_slice(&end.to_array()));
-                lines.extend_from_slice(&line.color);
-            }
-        }
+        let lines = line_bytes(picture);
         let key = Key {
             uniforms: bytemuck::bytes_of(&uniforms).to_vec(),
             pixels: picture.pixels,
@@ -226,7 +235,7 @@ impl Stage for Card {
                     look: picture.look,
                     lines: buffer(&self.state.device, &self.state.queue, &key.lines)
                         .filter(|_| !key.lines.is_empty())
-                        .map(|buffer| (buffer, 2 * picture.lines.len() as u32)),
+                        .map(|buffer| (buffer, picture.lines.len() as u32)),
                 },
             );
             self.drawn = Some(key);

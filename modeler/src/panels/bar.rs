@@ -94,6 +94,8 @@ fn view(modeler: &mut Modeler, ui: &mut Ui) {
     let label = ui.label("leaning out by more than");
     let angle = egui::DragValue::new(&mut settings.overhang).range(OVERHANGS).suffix("°").ui(ui);
     angle.labelled_by(label.id);
+    ui.checkbox(&mut settings.shows_seams, "Seams between parts")
+        .on_hover_text("Lines where parts meet: teal blended, orange cut, violet shared, blue side by side");
     ui.checkbox(&mut settings.shows_ground, "Ground and printer's room");
     ui.checkbox(&mut settings.snaps, "Snap while dragging").on_hover_text(
         "Parts come to rest on the bed, in the middle, and on whole steps; Ctrl lets them free",

@@ -2,6 +2,7 @@
 
 use super::edit;
 use crate::modeler::Modeler;
+use crate::seams;
 use crate::settings::Tool;
 use blobtree::{Color, Command, Node, NodePath, NodeRef, Operator, Shape, Sharpness, Warp};
 use egui::{Color32, Id, Response, RichText, ScrollArea, Sense, Ui, collapsing_header};
@@ -96,7 +97,18 @@ fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &m
         let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 14.0), Sense::hover());
         ui.painter().rect_filled(rect.shrink(1.0), 2.0, Color32::from_rgb(r, g, b));
     }
+    if let (Shape::Operator(operator, _), true) = (&node.shape, modeler.settings.shows_seams) {
+        // As its seams on the model.
+        let [r, g, b] = seams::color(operator);
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(4.0, 16.0), Sense::hover());
+        ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
+    }
     let button = ui.add(egui::Button::selectable(is_selected, text).sense(Sense::click_and_drag()));
+    // What is under the pointer in the view lights up here.
+    if modeler.pointed() == Some(path) {
+        let light = egui::Stroke::new(2.0, Color32::from_rgb(90, 150, 230));
+        ui.painter().rect_stroke(button.rect, 3.0, light, egui::StrokeKind::Inside);
+    }
     button.dnd_set_drag_payload(Dragged(path.clone()));
     if button.hovered() {
         done.hovered = Some(path.clone());

@@ -9,6 +9,8 @@ mod pictures;
 mod selecting;
 mod snapping;
 
+pub use selecting::meant;
+
 use crate::ground;
 use crate::modeler::Modeler;
 use crate::stage::{Picture, Stage};
@@ -47,10 +49,20 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui, stage: &mut dyn Stage) {
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Model view"));
         modeler.view.screen = Vec2::new(rect.width().max(1.0), rect.height().max(1.0));
         hand::heed(modeler, ui, &response);
+        point(modeler, &response);
         picture(modeler, ui, rect, stage);
         overlay::show(modeler, ui, &response);
         crate::lesson::show(modeler, ui, rect);
     });
+}
+
+/// Looks what is under the pointer, unless the hand is at work.
+fn point(modeler: &mut Modeler, response: &Response) {
+    let is_free = modeler.view.hold == hand::Hold::Nothing && modeler.pad.is_empty();
+    let at = response.hover_pos().filter(|_| is_free).map(|at| in_view(at, response));
+    let ray = at.map(|at| modeler.camera.view(modeler.view.screen).ray(at));
+    let root = &modeler.bench.scene().root;
+    modeler.pointing.at(root, ray.map(|ray| (ray.origin, ray.direction)));
 }
 
 /// The knobs: what they say, and where they are.
@@ -73,7 +85,10 @@ fn picture(modeler: &Modeler, ui: &Ui, rect: Rect, stage: &mut dyn Stage) {
     let dark = ui.visuals().dark_mode;
     let background = if dark { [34, 36, 40] } else { [236, 238, 241] };
     let scale = ui.ctx().pixels_per_point();
-    let lines = ground::lines(&modeler.settings, dark);
+    let mut lines = ground::lines(&modeler.settings, dark);
+    if let (true, Some(solid)) = (modeler.settings.shows_seams, modeler.solid()) {
+        lines.extend_from_slice(&solid.seams);
+    }
     let picture = Picture {
         view: modeler.camera.view(modeler.view.screen),
         pixels: [rect.width(), rect.height()].map(|points| ((points * scale).round() as u32).clamp(1, 8192)),

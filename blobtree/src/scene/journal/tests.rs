@@ -308,7 +308,7 @@ fn lines_that_are_wrong_are_refused_with_the_place_and_the_reason() {
         ),
         (
             r#""do":"together","commands":[{"format":"trullo-journal","version":1,"do":"remove","path":"0"}]"#,
-            "line 1, column 126: `path` is the text",
+            "line 1, column 128: `path` is the text",
         ),
     ];
     for (rest, expected) in cases {
