@@ -28,6 +28,7 @@ mod node_box;
 pub mod notices;
 pub mod pad;
 mod panels;
+pub mod pen;
 pub mod placing;
 mod pointing;
 pub mod seams;

@@ -20,6 +20,7 @@ use crate::node_box::NodeBox;
 use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
 use crate::panels;
+use crate::pen::Pen;
 use crate::pointing::Pointing;
 use crate::settings::{Settings, Theme};
 use crate::solid::{Asking, Solid, SolidMaker};
@@ -40,6 +41,8 @@ pub struct Modeler {
     pub camera: Camera,
     /// The sketch in the air.
     pub pad: Pad,
+    /// The pen, as far as the platform tells of it.
+    pub pen: Pen,
     /// How the user likes to work.
     pub settings: Settings,
     /// What is kept from one start to the next; nothing in tests that do not want it.
@@ -114,6 +117,7 @@ impl Modeler {
             bench,
             camera: Camera::default(),
             pad: Pad::default(),
+            pen: Pen::default(),
             settings: Settings::default(),
             kept: Kept::default(),
             dressed: (Theme::System, 1.0),
@@ -147,6 +151,7 @@ impl Modeler {
 
     /// Shows everything, and does what the user wants.
     pub fn ui(&mut self, ui: &mut egui::Ui, stage: &mut dyn Stage) {
+        self.pen.guard(ui.ctx());
         self.begin_frame();
         self.dress(ui.ctx());
         self.hear();
@@ -165,6 +170,7 @@ impl Modeler {
         self.notices.show(ui);
         self.ask();
         self.kept.follow(&self.settings);
+        self.view.had_focus = ui.ctx().egui_wants_keyboard_input();
         let computing = !self.is_at_rest();
         if let Some(trace) = &mut self.trace {
             trace.frame(self.now, computing);

@@ -36,6 +36,10 @@ pub enum Hold {
 
 /// Does what the hand does.
 pub fn heed(modeler: &mut Modeler, ui: &Ui, response: &Response) {
+    if modeler.pen.is_cancelled() {
+        modeler.pad.drop_current();
+        (modeler.view.hold, modeler.view.fingers) = (Hold::Nothing, None);
+    }
     fingers(modeler, ui, response);
     wheel(modeler, ui, response);
     press(modeler, ui, response);
@@ -134,14 +138,18 @@ fn press(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     }
     let at = in_view(at, response);
     modeler.view.hold = match modeler.settings.tool {
-        _ if space => Hold::View(Tool::Turn),
+        _ if space || modeler.pen.state().barrel => Hold::View(Tool::Turn),
         tool @ (Tool::Turn | Tool::Pan) => Hold::View(tool),
+        tool if modeler.pen.state().eraser => {
+            begin(modeler, at, tool, ui);
+            Hold::Pen
+        }
         Tool::Draw | Tool::Select if let Some(knob) = Knob::at(modeler, at) => {
             Hold::Knob(knob.turns, at, knob.value)
         }
         Tool::Draw | Tool::Select if let Some(handle) = Handle::at(modeler, at) => Hold::Handle(handle, at),
         tool => {
-            modeler.pad.begin(sample(at, ui), tool == Tool::Erase);
+            begin(modeler, at, tool, ui);
             Hold::Pen
         }
     };
@@ -170,13 +178,13 @@ fn pen(modeler: &mut Modeler, ui: &Ui, response: &Response) {
         match event {
             // A slow frame may have several strokes.
             Event::PointerButton { button: PointerButton::Primary, pressed: true, pos, .. } => {
-                modeler.pad.begin(sample(in_view(*pos, response), ui), modeler.settings.tool == Tool::Erase);
+                begin(modeler, in_view(*pos, response), modeler.settings.tool, ui);
                 modeler.view.hold = Hold::Pen;
             }
-            Event::PointerMoved(to) => modeler.pad.go_on(sample(in_view(*to, response), ui)),
+            Event::PointerMoved(to) => modeler.pad.go_on(sample(modeler, in_view(*to, response), ui)),
             Event::PointerButton { button: PointerButton::Primary, pressed: false, pos, .. } => {
                 let at = in_view(*pos, response);
-                modeler.pad.go_on(sample(at, ui));
+                modeler.pad.go_on(sample(modeler, at, ui));
                 lift(modeler, ui);
             }
             // The pen has left the world.
@@ -265,14 +273,22 @@ fn knob_dragged(modeler: &mut Modeler, ui: &Ui, response: &Response, turns: Turn
     }
 }
 
-/// What the pen says now, with the time of this frame and the pressure of the finger or pen.
-fn sample(at: Vec2, ui: &Ui) -> PenSample {
-    let (time, pressure) = ui.input(|input| {
+/// The pen touches down: with its eraser end, whatever the tool is, it rubs out.
+fn begin(modeler: &mut Modeler, at: Vec2, tool: Tool, ui: &Ui) {
+    let sample = sample(modeler, at, ui);
+    modeler.pad.begin(sample, tool == Tool::Erase || modeler.pen.state().eraser);
+}
+
+/// What the pen says now, with the time of this frame. Without a source that knows, it presses as the finger does.
+fn sample(modeler: &Modeler, at: Vec2, ui: &Ui) -> PenSample {
+    let (time, force) = ui.input(|input| {
         let forces = input.events.iter().rev().filter_map(|event| match event {
             Event::Touch { force, .. } => *force,
             _ => None,
         });
         (input.time, forces.take(1).next())
     });
-    PenSample { time: Some(time as f32), pressure: pressure.unwrap_or(1.0), ..PenSample::at(at) }
+    let pen = modeler.pen.state();
+    let pressure = pen.pressure.or(force).unwrap_or(1.0);
+    PenSample { time: Some(time as f32), pressure, tilt: pen.tilt, ..PenSample::at(at) }
 }

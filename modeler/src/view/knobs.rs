@@ -228,7 +228,7 @@ fn size(modeler: &Modeler, root: &NodeRef, selected: &NodePath) -> Option<Knob> 
     let (grows, extent, shortening) = if seen.length() >= SEEN {
         (seen.normalize(), unit.abs().dot(half) * seen.length(), seen.length())
     } else {
-        (ASIDE, half.max_element(), 1.0)
+        (aside(modeler), half.max_element(), 1.0)
     };
     let value = value.unwrap_or(2.0 * unit.abs().dot(half) / stretch.max(1e-6));
     Some(Knob {
@@ -240,6 +240,11 @@ fn size(modeler: &Modeler, root: &NodeRef, selected: &NodePath) -> Option<Knob> 
         per_point: times * mm_per_point / shortening / stretch.max(1e-6),
         value,
     })
+}
+
+/// Away from the hand that draws.
+fn aside(modeler: &Modeler) -> Vec2 {
+    if modeler.settings.left_handed { Vec2::new(-ASIDE.x, ASIDE.y) } else { ASIDE }
 }
 
 fn blend(modeler: &Modeler, root: &NodeRef, selected: &NodePath) -> Option<Knob> {

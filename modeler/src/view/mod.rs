@@ -25,6 +25,8 @@ pub struct ViewState {
     pub screen: Vec2,
     /// Whether the next solid is to be shown whole.
     pub shows_new: bool,
+    /// Whether a control had the keyboard in the last frame.
+    pub had_focus: bool,
     /// Whether the user wants to quit, and nothing is lost by it.
     pub quits: bool,
     /// The suggestions' buttons of the last frame, in points of the view.

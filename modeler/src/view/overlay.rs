@@ -189,7 +189,8 @@ fn paint_line(painter: &Painter, line: Vec<Pos2>, stroke: Stroke) {
     }
 }
 
-/// The list beside the sketch, never under the pen: on the side with more room.
+/// The list beside the sketch, never under the pen: on the right, for left-handed people on the left, unless there is
+/// more room on the other side.
 fn suggestions(modeler: &mut Modeler, ui: &mut Ui, view: &View, response: &Response) {
     modeler.view.buttons.clear();
     let Some(expectations) = modeler.pad.expectations.clone() else { return };
@@ -203,7 +204,12 @@ fn suggestions(modeler: &mut Modeler, ui: &mut Ui, view: &View, response: &Respo
     let rows = expectations.suggestions.len().max(1) as f32;
     let size = Vec2::new(BUTTON.x + 8.0, rows * (BUTTON.y + 4.0) + 8.0);
     let screen = modeler.view.screen;
-    let right = screen.x - hi.x >= size.x + GAP || screen.x - hi.x >= lo.x;
+    let (on_left, on_right) = (lo.x, screen.x - hi.x);
+    let right = if modeler.settings.left_handed {
+        on_left < size.x + GAP && on_left < on_right
+    } else {
+        on_right >= size.x + GAP || on_right >= on_left
+    };
     let x = if right { hi.x + GAP } else { lo.x - GAP - size.x };
     let at = Vec2::new(x, lo.y).clamp(Vec2::splat(4.0), (screen - size - 4.0).max(Vec2::splat(4.0)));
     let mut chosen = None;
@@ -257,10 +263,14 @@ fn suggestion_button(ui: &mut Ui, suggestion: &Suggestion, picture: Option<&Text
     response
 }
 
-/// The named views, in the corner.
+/// The named views, in the corner of the hand that draws.
 fn view_buttons(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
-    let corner = response.rect.right_top() + vec2(-8.0, 8.0);
-    let area = Area::new(Id::unique("views")).order(Order::Middle).pivot(Align2::RIGHT_TOP).fixed_pos(corner);
+    let (pivot, corner) = if modeler.settings.left_handed {
+        (Align2::LEFT_TOP, response.rect.left_top() + vec2(8.0, 8.0))
+    } else {
+        (Align2::RIGHT_TOP, response.rect.right_top() + vec2(-8.0, 8.0))
+    };
+    let area = Area::new(Id::unique("views")).order(Order::Middle).pivot(pivot).fixed_pos(corner);
     area.show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).inner_margin(4.0).show(ui, |ui| {
             egui::Grid::new("sides").spacing([3.0, 3.0]).show(ui, |ui| {
