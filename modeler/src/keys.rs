@@ -5,7 +5,8 @@ use crate::dialog::Dialog;
 use crate::modeler::Modeler;
 use crate::settings::Tool;
 use blobtree::Operator;
-use egui::{Key, KeyboardShortcut, Modifiers, Ui};
+use egui::{Key, KeyboardShortcut, Modifiers, Popup, Ui};
+use glam::Vec2;
 
 /// A key, what it does in words, and how.
 pub struct Binding {
@@ -21,7 +22,7 @@ const fn with(modifiers: Modifiers, key: Key, help: &'static str, run: fn(&mut M
 }
 
 /// All keys, in the order of the help.
-pub const BINDINGS: [Binding; 33] = [
+pub const BINDINGS: [Binding; 40] = [
     with(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z, "do again what was undone", Modeler::redo),
     with(Modifiers::COMMAND, Key::Y, "do again what was undone", Modeler::redo),
     with(Modifiers::COMMAND, Key::Z, "undo the last stroke or step", Modeler::undo),
@@ -41,6 +42,17 @@ pub const BINDINGS: [Binding; 33] = [
     with(Modifiers::NONE, Key::P, "select the parent", Modeler::select_parent),
     with(Modifiers::NONE, Key::M, "mirror to the other side", Modeler::mirror_selected),
     with(Modifiers::NONE, Key::G, "put on the ground", Modeler::ground_selected),
+    with(Modifiers::NONE, Key::ArrowLeft, "move what is selected by 1 mm", |m| m.nudge(-Vec2::X)),
+    with(Modifiers::NONE, Key::ArrowRight, "move what is selected by 1 mm", |m| m.nudge(Vec2::X)),
+    with(Modifiers::NONE, Key::ArrowUp, "move it up, or away when seen from above", |m| m.nudge(Vec2::Y)),
+    with(Modifiers::NONE, Key::ArrowDown, "move it down, or nearer when seen from above", |m| {
+        m.nudge(-Vec2::Y);
+    }),
+    with(Modifiers::NONE, Key::Plus, "make what is selected larger", |m| m.size_selected(1.1)),
+    with(Modifiers::NONE, Key::Minus, "make what is selected smaller", |m| m.size_selected(1.0 / 1.1)),
+    with(Modifiers::NONE, Key::R, "turn what is selected by 15°, seen from above", |m| {
+        m.turn_selected(15.0)
+    }),
     with(Modifiers::NONE, Key::L, "the field lens: what makes the value at a place", Modeler::toggle_lens),
     with(Modifiers::NONE, Key::F, "see everything", |m| m.camera.show(m.bounds())),
     with(Modifiers::NONE, Key::D, "draw", |m| m.settings.tool = Tool::Draw),
@@ -62,10 +74,12 @@ pub const BINDINGS: [Binding; 33] = [
 /// Does what the keys say that were pressed, unless something is being typed; keys alone belong to the control that has
 /// the focus.
 pub fn heed(modeler: &mut Modeler, ui: &mut Ui) {
-    if ui.ctx().text_edit_focused() || modeler.dialog.is_some() {
+    // An open menu has the keyboard: Escape closes it.
+    if ui.ctx().text_edit_focused() || modeler.dialog.is_some() || Popup::is_any_open(ui.ctx()) {
         return;
     }
-    let focused = ui.ctx().egui_wants_keyboard_input();
+    // Escape lets go of a control, and does nothing else.
+    let focused = ui.ctx().egui_wants_keyboard_input() || modeler.view.had_focus;
     for binding in BINDINGS.iter().filter(|binding| !focused || binding.shortcut.modifiers.command) {
         if ui.input_mut(|input| input.consume_shortcut(&binding.shortcut)) {
             (binding.run)(modeler);

@@ -4,7 +4,7 @@ use super::Modeler;
 use crate::placing::{self, Motion};
 use crate::several;
 use blobtree::{Aabb, Command, NodePath, Operator};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Why a part cannot have a copy.
 const NOTHING_BESIDE: &str = "Only parts of a union, a blend or a cut can have a copy beside them.";
@@ -84,6 +84,30 @@ impl Modeler {
     pub fn ground_selected(&mut self) {
         if let Some(bounds) = self.selected_box() {
             self.place(Motion::Move(Vec3::new(0.0, 0.0, -bounds.min.z)), true);
+        }
+    }
+
+    /// Moves what is selected by a millimetre along the axis that is nearest to this direction of the screen, with y up.
+    pub fn nudge(&mut self, to: Vec2) {
+        let view = self.camera.view(self.view.screen);
+        let seen = view.right() * to.x + view.up * to.y;
+        let axis = seen.abs().max_position();
+        let mut by = Vec3::ZERO;
+        by[axis] = seen[axis].signum();
+        self.place(Motion::Move(by), true);
+    }
+
+    /// Turns what is selected about its middle, degrees, counter-clockwise seen from above.
+    pub fn turn_selected(&mut self, degrees: f32) {
+        if let Some(bounds) = self.selected_box() {
+            self.place(Motion::Turn { about: bounds.center(), axis: Vec3::Z, degrees }, true);
+        }
+    }
+
+    /// Makes what is selected larger by a factor, about its middle.
+    pub fn size_selected(&mut self, factor: f32) {
+        if let Some(bounds) = self.selected_box() {
+            self.place(Motion::Scale { about: bounds.center(), factor }, true);
         }
     }
 
