@@ -151,6 +151,9 @@ impl Modeler {
 
     /// Shows everything, and does what the user wants.
     pub fn ui(&mut self, ui: &mut egui::Ui, stage: &mut dyn Stage) {
+        if !std::mem::replace(&mut self.view.is_dressed, true) {
+            crate::theme::dress(ui.ctx());
+        }
         self.pen.guard(ui.ctx());
         self.begin_frame();
         self.dress(ui.ctx());

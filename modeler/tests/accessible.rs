@@ -160,3 +160,20 @@ fn a_part_is_chosen_moved_and_copied_with_the_keyboard_alone() {
     settle(&mut screen);
     assert_eq!(screen.state().bench.document().undo_names().count(), 2);
 }
+
+#[test]
+fn the_help_tells_of_every_key_once() {
+    let mut screen = screen(None);
+    screen.key_press(Key::Questionmark);
+    settle(&mut screen);
+    for binding in &modeler::keys::BINDINGS {
+        assert!(screen.query_all_by_label(binding.help).next().is_some(), "{} is missing", binding.help);
+        let same = |other: &&modeler::keys::Binding| other.shortcut == binding.shortcut;
+        assert_eq!(modeler::keys::BINDINGS.iter().filter(same).count(), 1, "{}", binding.help);
+    }
+    for tool in modeler::settings::Tool::ALL {
+        let has_key =
+            modeler::keys::BINDINGS.iter().any(|binding| binding.shortcut.logical_key == tool.key());
+        assert!(has_key, "{} has no key", tool.name());
+    }
+}

@@ -3,9 +3,9 @@
 mod arrival;
 mod files;
 mod left_behind;
-mod words;
 
 use crate::desk::Purpose;
+use crate::help;
 use crate::journal::LeftBehind;
 use crate::modeler::{Fetched, Modeler, Newcomer};
 use egui::{Align2, Key, Ui, Window};
@@ -137,7 +137,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
             Dialog::Arrival(fetched) => arrival::show(modeler, ui, fetched),
             Dialog::LeftBehind(sessions) => left_behind::show(modeler, ui, sessions),
             Dialog::Examples => examples(modeler, ui),
-            Dialog::Help => words::show(ui),
+            Dialog::Help => help::show(ui).then_some(Dialog::Help),
         });
     });
     if modeler.dialog.is_none() {

@@ -4,6 +4,7 @@ use super::edit;
 use crate::modeler::Modeler;
 use crate::seams;
 use crate::settings::Tool;
+use crate::theme;
 use blobtree::{Color, Command, Node, NodePath, NodeRef, Operator, Shape, Sharpness, Warp};
 use egui::{Color32, Id, Response, RichText, ScrollArea, Sense, Ui, collapsing_header};
 
@@ -106,7 +107,7 @@ fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &m
     let button = ui.add(egui::Button::selectable(is_selected, text).sense(Sense::click_and_drag()));
     // What is under the pointer in the view lights up here.
     if modeler.pointed() == Some(path) {
-        let light = egui::Stroke::new(2.0, Color32::from_rgb(90, 150, 230));
+        let light = egui::Stroke::new(2.0, theme::pointed(ui.visuals().dark_mode));
         ui.painter().rect_stroke(button.rect, 3.0, light, egui::StrokeKind::Inside);
     }
     button.dnd_set_drag_payload(Dragged(path.clone()));

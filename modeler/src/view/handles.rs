@@ -2,6 +2,7 @@
 
 use crate::modeler::Modeler;
 use crate::placing::Motion;
+use crate::theme;
 use egui::Color32;
 use glam::{Vec2, Vec3};
 use sketch::suggest::View;
@@ -113,6 +114,12 @@ pub const ALL: [Handle; 8] = [
     Handle::Ring(2),
 ];
 
+/// The colours of all of them.
+#[cfg(test)]
+pub fn colors(dark: bool) -> [Color32; 8] {
+    ALL.map(|handle| handle.color(dark))
+}
+
 impl Handle {
     /// The handle at a place of the view: the nearest within a pen's reach.
     pub fn at(modeler: &Modeler, at: Vec2) -> Option<Self> {
@@ -126,12 +133,12 @@ impl Handle {
     }
 
     /// Its colour: red, green and blue for x, y and z.
-    pub fn color(self) -> Color32 {
+    pub fn color(self, dark: bool) -> Color32 {
         match self {
             Self::Arrow(0) | Self::Ring(0) => Color32::from_rgb(214, 69, 61),
-            Self::Arrow(1) | Self::Ring(1) => Color32::from_rgb(86, 160, 60),
-            Self::Arrow(_) | Self::Ring(_) => Color32::from_rgb(56, 110, 200),
-            Self::Square | Self::Middle => Color32::from_rgb(240, 170, 40),
+            Self::Arrow(1) | Self::Ring(1) => Color32::from_rgb(62, 140, 45),
+            Self::Arrow(_) | Self::Ring(_) => Color32::from_rgb(62, 118, 210),
+            Self::Square | Self::Middle => theme::selected(dark),
         }
     }
 

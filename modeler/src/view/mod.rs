@@ -9,11 +9,14 @@ mod pictures;
 mod selecting;
 mod snapping;
 
+#[cfg(test)]
+pub use handles::colors as handle_colors;
 pub use selecting::meant;
 
 use crate::ground;
 use crate::modeler::Modeler;
 use crate::stage::{Picture, Stage};
+use crate::theme;
 use egui::{CentralPanel, Color32, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::Vec2;
 use sketch::gesture::Button;
@@ -25,6 +28,8 @@ pub struct ViewState {
     pub screen: Vec2,
     /// Whether the next solid is to be shown whole.
     pub shows_new: bool,
+    /// Whether the window has its colours.
+    pub is_dressed: bool,
     /// Whether a control had the keyboard in the last frame.
     pub had_focus: bool,
     /// Whether the user wants to quit, and nothing is lost by it.
@@ -85,7 +90,7 @@ fn in_view(place: Pos2, response: &Response) -> Vec2 {
 
 fn picture(modeler: &Modeler, ui: &Ui, rect: Rect, stage: &mut dyn Stage) {
     let dark = ui.visuals().dark_mode;
-    let background = if dark { [34, 36, 40] } else { [236, 238, 241] };
+    let background = theme::background(dark);
     let scale = ui.ctx().pixels_per_point();
     let mut lines = ground::lines(&modeler.settings, dark);
     if let (true, Some(solid)) = (modeler.settings.shows_seams, modeler.solid()) {

@@ -7,6 +7,7 @@ use super::{in_view, on_screen, snapping};
 use crate::camera::Side;
 use crate::expecting;
 use crate::modeler::Modeler;
+use crate::theme;
 use blobtree::Aabb;
 use egui::{
     Align2, Area, Button, Color32, CornerRadius, FontId, Id, Order, Painter, Pos2, Rect, Response, RichText,
@@ -37,10 +38,11 @@ const GAP: f32 = 18.0;
 pub fn show(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
     let painter = ui.painter_at(response.rect);
     let view = modeler.camera.view(modeler.view.screen);
+    let dark = ui.visuals().dark_mode;
     // A sketch in the air has the view for itself.
     if modeler.pad.is_empty() {
-        let selected = modeler.selected_boxes().map(|bounds| (bounds, Color32::from_rgb(240, 170, 40)));
-        let hovered = modeler.hovered_box().map(|bounds| (bounds, Color32::from_rgb(90, 150, 230)));
+        let selected = modeler.selected_boxes().map(|bounds| (bounds, theme::selected(dark)));
+        let hovered = modeler.hovered_box().map(|bounds| (bounds, theme::pointed(dark)));
         for (bounds, color) in selected.chain(hovered) {
             paint_box(&painter, &within(&bounds, &modeler.bounds()), &view, response, color);
         }
@@ -81,6 +83,7 @@ fn paint_box(painter: &Painter, bounds: &Aabb, view: &View, response: &Response,
 
 fn paint_handles(modeler: &Modeler, painter: &Painter, response: &Response) {
     let Some(handles) = Handles::of(modeler) else { return };
+    let dark = painter.ctx().global_style().visuals.dark_mode;
     let held = match modeler.view.hold {
         Hold::Handle(handle, _) => Some(handle),
         Hold::Nothing => response.hover_pos().and_then(|at| Handle::at(modeler, in_view(at, response))),
@@ -88,20 +91,21 @@ fn paint_handles(modeler: &Modeler, painter: &Painter, response: &Response) {
     };
     for handle in ALL.into_iter().rev() {
         let width = if held == Some(handle) { 4.0 } else { 2.0 };
-        let stroke = Stroke::new(width, handle.color());
+        let color = handle.color(dark);
+        let stroke = Stroke::new(width, color);
         let line: Vec<Pos2> = handles.line(handle).into_iter().map(|p| on_screen(p, response)).collect();
         match (handle, &line[..]) {
             (Handle::Arrow(_), [from, to]) => painter.arrow(*from, *to - *from, stroke),
             (Handle::Square, [at]) => {
                 let square = Rect::from_center_size(*at, vec2(14.0, 14.0));
-                painter.rect_filled(square, 2.0, handle.color());
+                painter.rect_filled(square, 2.0, color);
             }
             (Handle::Middle, [at]) => {
-                painter.circle_filled(*at, if held == Some(handle) { 9.0 } else { 7.0 }, handle.color());
+                painter.circle_filled(*at, if held == Some(handle) { 9.0 } else { 7.0 }, color);
             }
             (_, []) => {}
             (_, many) => {
-                painter.line(many.to_vec(), Stroke::new(width, handle.color().gamma_multiply(0.8)));
+                painter.line(many.to_vec(), Stroke::new(width, color.gamma_multiply(0.8)));
             }
         }
     }
