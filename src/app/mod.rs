@@ -2,6 +2,8 @@
 
 mod desk;
 mod pipelines;
+#[cfg(test)]
+mod snapshots;
 mod stage;
 
 use crate::failure::Failure;
