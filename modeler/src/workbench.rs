@@ -4,7 +4,7 @@ use crate::journal::{Journal, JournalError, Recovered};
 use crate::several;
 use blobtree::build::union;
 use blobtree::{
-    Change, Command, CommandError, Document, JournalEntry, NodePath, NodeRef, Scene, SceneError,
+    Change, Command, CommandError, Document, JournalEntry, Node, NodePath, NodeRef, Scene, SceneError,
 };
 use std::path::{Path, PathBuf};
 

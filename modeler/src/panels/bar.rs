@@ -1,7 +1,7 @@
 //! The bar above: files, undo, the pen's tools, and how the model is shown.
 
-use super::recent;
 use super::edit;
+use super::recent;
 use crate::dialog::{Dialog, Then};
 use crate::lesson::Lesson;
 use crate::modeler::Modeler;
