@@ -51,7 +51,7 @@ pub const BINDINGS: [Binding; 40] = [
     with(Modifiers::NONE, Key::Plus, "make what is selected larger", |m| m.size_selected(1.1)),
     with(Modifiers::NONE, Key::Minus, "make what is selected smaller", |m| m.size_selected(1.0 / 1.1)),
     with(Modifiers::NONE, Key::R, "turn what is selected by 15°, seen from above", |m| {
-        m.turn_selected(15.0)
+        m.turn_selected(15.0);
     }),
     with(Modifiers::NONE, Key::L, "the field lens: what makes the value at a place", Modeler::toggle_lens),
     with(Modifiers::NONE, Key::F, "see everything", |m| m.camera.show(m.bounds())),

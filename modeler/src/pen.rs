@@ -9,14 +9,24 @@
 use egui::{
     Context, Event, Modifiers, Plugin, PointerButton, Pos2, RawInput, TouchDeviceId, TouchId, TouchPhase,
 };
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 /// How long after a pen was near fingers are not heard, seconds.
 const SHORTLY: f64 = 0.4;
 
 /// A touch within this distance of the pen is the pen itself, where the platform tells of it twice, points.
 const ITSELF: f32 = 24.0;
+
+/// A pen that hovers and says nothing for so long has gone away.
+const STILL: Duration = Duration::from_millis(800);
+
+/// How many of the things that a pen has said are remembered.
+const RECENT: usize = 128;
+
+/// Two places that are nearer to each other than this are the same, points.
+const SAME_PLACE: f32 = 0.6;
 
 /// Where nothing is that could be clicked.
 const ELSEWHERE: Pos2 = Pos2::new(-1e4, -1e4);
@@ -44,13 +54,24 @@ pub struct Pen(Arc<Mutex<Known>>);
 
 #[derive(Debug, Default)]
 struct Known {
-    /// What the platform has said; none if it has never said anything.
-    told: Option<PenState>,
+    /// What the platform has said, and when; none if it has never said anything.
+    told: Option<(PenState, Instant)>,
+    /// What it has said of places shortly before, the latest last.
+    recent: VecDeque<PenState>,
     /// When a pen was last near, in seconds of the screen's clock.
     last_near: Option<f64>,
     /// Whether something that is held is held by a hand that is no longer heard.
     is_cancelled: bool,
     is_guarding: bool,
+}
+
+impl Known {
+    /// What the pen says that is near. Not all platforms tell when it goes away, but a pen that hovers is never still.
+    fn near(&self) -> Option<PenState> {
+        let (state, since) = self.told?;
+        let presses = state.pressure.is_some_and(|pressure| pressure > 0.0);
+        (state.is_near && (presses || since.elapsed() < STILL)).then_some(state)
+    }
 }
 
 impl Pen {
@@ -60,12 +81,25 @@ impl Pen {
 
     /// Tells what the pen says now. Whoever tells it also asks for a new frame.
     pub fn tell(&self, state: PenState) {
-        self.known().told = Some(state);
+        let mut known = self.known();
+        known.told = Some((state, Instant::now()));
+        if known.recent.len() == RECENT {
+            known.recent.pop_front();
+        }
+        known.recent.push_back(state);
     }
 
     /// What the pen says; nothing but its usual self without a source that knows.
     pub fn state(&self) -> PenState {
-        self.known().told.filter(|state| state.is_near).unwrap_or_default()
+        self.known().near().unwrap_or_default()
+    }
+
+    /// What the pen said when it was at this place of the window: a slow frame hears of many places at once.
+    pub fn state_at(&self, place: Pos2) -> PenState {
+        let known = self.known();
+        let Some(now) = known.near() else { return PenState::default() };
+        let was_there = |state: &&PenState| state.at.is_some_and(|at| at.distance(place) < SAME_PLACE);
+        known.recent.iter().rev().find(was_there).copied().unwrap_or(now)
     }
 
     /// From now on, fingers are not heard while the pen is near.
@@ -157,22 +191,21 @@ impl PalmGuard {
     /// Whether a pen is near, or was until shortly.
     fn is_pen_near(&self, now: f64) -> bool {
         let mut known = self.pen.known();
-        if known.told.is_some_and(|state| state.is_near) {
+        if known.near().is_some() {
             known.last_near = Some(now);
         }
         known.last_near.is_some_and(|last| now - last < SHORTLY)
     }
 
     fn is_pen_itself(&self, touch: Pos2) -> bool {
-        let told = self.pen.known().told.filter(|state| state.is_near);
-        told.and_then(|state| state.at).is_some_and(|at| at.distance(touch) < ITSELF)
+        self.pen.known().near().and_then(|state| state.at).is_some_and(|at| at.distance(touch) < ITSELF)
     }
 
     /// A pen has come: what fingers hold is let go.
     fn pen_is_near(&mut self, now: f64, out: &mut Vec<Event>) {
         let mut known = self.pen.known();
         // A platform that tells of pens tells them from mice.
-        if known.told.is_some_and(|state| !state.is_near) {
+        if known.told.is_some() && known.near().is_none() {
             return;
         }
         known.last_near = Some(now);

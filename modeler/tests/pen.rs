@@ -27,11 +27,13 @@ fn the_eraser_end_rubs_out_whatever_the_tool_is_and_over_handles_too() {
     let at = middle(&screen);
     draw(&mut screen, circle(at, 100.0));
     let before: usize = strokes(&screen).iter().sum();
+    press(&mut screen, "Turn");
     screen.state().pen.tell(PenState { eraser: true, ..NEAR });
     draw(&mut screen, (-20..=20).map(|i| at + vec2(100.0, 3.0 * i as f32)));
     let after: usize = strokes(&screen).iter().sum();
     assert!(after < before, "{before} to {after}");
     // The other end draws again.
+    press(&mut screen, "Draw");
     screen.state().pen.tell(NEAR);
     draw(&mut screen, circle(at, 30.0));
     assert!(strokes(&screen).iter().sum::<usize>() > after);
@@ -46,6 +48,25 @@ fn how_hard_the_pen_presses_and_how_it_leans_is_kept_with_the_stroke() {
     let sketch = screen.state().pad.sketch();
     let pens: Vec<_> = sketch.strokes.iter().flat_map(|stroke| &stroke.samples).map(|s| s.pen).collect();
     assert!(pens.len() > 20 && pens.iter().all(|pen| (pen.pressure, pen.tilt) == (0.25, [30.0, -10.0])));
+}
+
+#[test]
+fn a_slow_frame_that_hears_of_many_places_at_once_knows_how_hard_each_was_pressed() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    let places: Vec<Pos2> = (0..20).map(|i| at + vec2(8.0 * i as f32, 0.0)).collect();
+    let press = |i: usize| 0.1 + i as f32 / 40.0;
+    for (i, place) in places.iter().enumerate() {
+        screen.state().pen.tell(PenState { at: Some(*place), pressure: Some(press(i)), ..NEAR });
+    }
+    let mut events = vec![Event::PointerMoved(places[0]), button(places[0], true)];
+    events.extend(places.iter().map(|place| Event::PointerMoved(*place)));
+    events.push(button(places[19], false));
+    screen.input_mut().events.extend(events);
+    screen.step();
+    let sketch = screen.state().pad.sketch();
+    let pressures: Vec<f32> = sketch.strokes[0].samples.iter().map(|sample| sample.pen.pressure).collect();
+    assert_eq!(pressures, (0..20).map(press).collect::<Vec<_>>());
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! The window: the modeler on the screen, with a graphics card to draw it.
 
 mod desk;
+#[cfg(all(unix, not(target_os = "macos")))]
+mod pens;
 mod pipelines;
 #[cfg(test)]
 mod snapshots;
@@ -124,6 +126,8 @@ impl App {
         if let Some(state) = state {
             modeler.keep_in(state);
         }
+        #[cfg(all(unix, not(target_os = "macos")))]
+        pens::listen(context, modeler.pen.clone(), context.egui_ctx.clone());
         if let Some(file) = file {
             modeler.begin_with(file.to_path_buf());
         }

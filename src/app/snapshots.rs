@@ -27,6 +27,9 @@ const FAINT: u8 = 24;
 /// The share of pixels that may be different: fonts and edges come out a little different with each driver.
 const TOLERATED: f64 = 0.005;
 
+/// Goes from the empty page to a screen.
+type Prepare = fn(&mut Screen);
+
 type Screen = Harness<'static, (Modeler, Card)>;
 
 /// A graphics card without a window, if there is one: the processor's own before others, which is the same everywhere.
@@ -215,7 +218,7 @@ fn open(screen: &mut Screen, example: usize) {
 }
 
 /// What is on a screen: its name, and how to get there from the empty page.
-const SCREENS: [(&str, fn(&mut Screen)); 7] = [
+const SCREENS: [(&str, Prepare); 7] = [
     ("empty", |_| ()),
     ("sketch", draw_circle),
     ("parts", |screen| {

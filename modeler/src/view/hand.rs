@@ -1,8 +1,8 @@
 //! What the hand does in the view: drawing, selecting, turning, moving.
 
 use super::handles::Handle;
-use super::in_view;
 use super::knobs::{self, Knob, Turns};
+use super::{in_view, on_screen};
 use super::{selecting, snapping};
 use crate::modeler::Modeler;
 use crate::pad::Around;
@@ -139,17 +139,17 @@ fn press(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     let at = in_view(at, response);
     modeler.view.hold = match modeler.settings.tool {
         _ if space || modeler.pen.state().barrel => Hold::View(Tool::Turn),
-        tool @ (Tool::Turn | Tool::Pan) => Hold::View(tool),
         tool if modeler.pen.state().eraser => {
-            begin(modeler, at, tool, ui);
+            begin(modeler, at, tool, response, ui);
             Hold::Pen
         }
+        tool @ (Tool::Turn | Tool::Pan) => Hold::View(tool),
         Tool::Draw | Tool::Select if let Some(knob) = Knob::at(modeler, at) => {
             Hold::Knob(knob.turns, at, knob.value)
         }
         Tool::Draw | Tool::Select if let Some(handle) = Handle::at(modeler, at) => Hold::Handle(handle, at),
         tool => {
-            begin(modeler, at, tool, ui);
+            begin(modeler, at, tool, response, ui);
             Hold::Pen
         }
     };
@@ -178,13 +178,15 @@ fn pen(modeler: &mut Modeler, ui: &Ui, response: &Response) {
         match event {
             // A slow frame may have several strokes.
             Event::PointerButton { button: PointerButton::Primary, pressed: true, pos, .. } => {
-                begin(modeler, in_view(*pos, response), modeler.settings.tool, ui);
+                begin(modeler, in_view(*pos, response), modeler.settings.tool, response, ui);
                 modeler.view.hold = Hold::Pen;
             }
-            Event::PointerMoved(to) => modeler.pad.go_on(sample(modeler, in_view(*to, response), ui)),
+            Event::PointerMoved(to) => {
+                modeler.pad.go_on(sample(modeler, in_view(*to, response), response, ui))
+            }
             Event::PointerButton { button: PointerButton::Primary, pressed: false, pos, .. } => {
                 let at = in_view(*pos, response);
-                modeler.pad.go_on(sample(modeler, at, ui));
+                modeler.pad.go_on(sample(modeler, at, response, ui));
                 lift(modeler, ui);
             }
             // The pen has left the world.
@@ -204,7 +206,7 @@ fn lift(modeler: &mut Modeler, ui: &Ui) {
         selecting::tap(modeler, start, ui.input(|input| input.modifiers));
         return;
     }
-    if modeler.settings.tool == Tool::Select {
+    if modeler.settings.tool == Tool::Select && !stroke.eraser {
         let places: Vec<Vec2> = stroke.places().collect();
         modeler.pad.drop_current();
         selecting::cross(modeler, places.into_iter());
@@ -274,13 +276,13 @@ fn knob_dragged(modeler: &mut Modeler, ui: &Ui, response: &Response, turns: Turn
 }
 
 /// The pen touches down: with its eraser end, whatever the tool is, it rubs out.
-fn begin(modeler: &mut Modeler, at: Vec2, tool: Tool, ui: &Ui) {
-    let sample = sample(modeler, at, ui);
+fn begin(modeler: &mut Modeler, at: Vec2, tool: Tool, response: &Response, ui: &Ui) {
+    let sample = sample(modeler, at, response, ui);
     modeler.pad.begin(sample, tool == Tool::Erase || modeler.pen.state().eraser);
 }
 
 /// What the pen says now, with the time of this frame. Without a source that knows, it presses as the finger does.
-fn sample(modeler: &Modeler, at: Vec2, ui: &Ui) -> PenSample {
+fn sample(modeler: &Modeler, at: Vec2, response: &Response, ui: &Ui) -> PenSample {
     let (time, force) = ui.input(|input| {
         let forces = input.events.iter().rev().filter_map(|event| match event {
             Event::Touch { force, .. } => *force,
@@ -288,7 +290,7 @@ fn sample(modeler: &Modeler, at: Vec2, ui: &Ui) -> PenSample {
         });
         (input.time, forces.take(1).next())
     });
-    let pen = modeler.pen.state();
+    let pen = modeler.pen.state_at(on_screen(at, response));
     let pressure = pen.pressure.or(force).unwrap_or(1.0);
     PenSample { time: Some(time as f32), pressure, tilt: pen.tilt, ..PenSample::at(at) }
 }
