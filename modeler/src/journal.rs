@@ -1,13 +1,14 @@
 //! Everything done to a document, on disk before it is shown, so that no end of the program loses it.
 //!
 //! A session is a folder: `scene.trullo` is the document as it was opened, `journal` says in its first line where that
-//! came from, and in each further line one [`JournalEntry`]. The program that works on a session holds a lock on its
+//! came from, and in each further line one [`JournalEntry`], or one [`Vary`] for what was done to variants. The program that works on a session holds a lock on its
 //! journal; a session that nobody holds was left behind. The user's own file is never touched.
 //!
 //! What was done is with the system before it is shown, so that it outlives the program. A thread then has the disk take
 //! it, which may last seconds on a busy one: if the power fails, what was done meanwhile may be lost.
 
-use blobtree::{Document, JournalEntry, Scene, SceneSources};
+use crate::variants::{Variants, Vary};
+use blobtree::{JournalEntry, Scene, SceneSources};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
@@ -118,12 +119,23 @@ impl Journal {
     /// Errors: a disk that is full or gone; an entry without text. Then the entry is not in the journal, or not on the
     /// disk.
     pub fn add(&mut self, entry: &JournalEntry, scene: &Scene) -> Result<(), JournalError> {
-        let line = entry.to_line(scene)?;
-        append(&mut self.file, &line).and_then(|()| self.disk.take()).map_err(|error| JournalError::Io {
-            path: self.folder.join(JOURNAL),
-            step: "writing what was done",
-            error,
-        })
+        self.add_line(&entry.to_line(scene)?)
+    }
+
+    /// Writes what is done to variants, likewise.
+    ///
+    /// Errors: as [`Self::add`].
+    pub fn add_vary(&mut self, vary: &Vary) -> Result<(), JournalError> {
+        let line = serde_json::to_string(vary).map_err(|e| self.failed(e.into()))?;
+        self.add_line(&line)
+    }
+
+    fn add_line(&mut self, line: &str) -> Result<(), JournalError> {
+        append(&mut self.file, line).and_then(|()| self.disk.take()).map_err(|error| self.failed(error))
+    }
+
+    fn failed(&self, error: io::Error) -> JournalError {
+        JournalError::Io { path: self.folder.join(JOURNAL), step: "writing what was done", error }
     }
 
     /// Ends the session: its document is saved, or is not wanted. What cannot be removed stays, and is offered again.
@@ -213,8 +225,8 @@ pub struct LeftBehind {
 /// What was brought back.
 #[derive(Debug)]
 pub struct Recovered {
-    /// The document, with all its history.
-    pub document: Document,
+    /// The document, with all its variants and their histories.
+    pub variants: Variants,
     /// Its journal, to be gone on with.
     pub journal: Journal,
     /// Why later entries were lost, if some were.
@@ -248,7 +260,7 @@ impl LeftBehind {
     pub fn recover(mut self, sources: &mut dyn SceneSources) -> Result<Recovered, JournalError> {
         let path = self.folder.join(BASE);
         let bytes = fs::read(&path).map_err(|error| JournalError::Io { path, step: "reading it", error })?;
-        let mut document = Document::new(Scene::from_bytes(&bytes, sources)?)?;
+        let mut variants = Variants::of(Scene::from_bytes(&bytes, sources)?)?;
         let journal = self.folder.join(JOURNAL);
         let failed = |step| {
             let path = journal.clone();
@@ -260,9 +272,7 @@ impl LeftBehind {
         let (mut lost, mut good) = (None, lines.read);
         while let Some(line) = lines.next() {
             let line = line.map_err(failed("reading it"))?;
-            let entry = JournalEntry::from_line(&line, document.scene(), sources).map_err(|e| e.to_string());
-            let done = entry.and_then(|entry| document.repeat(entry).map_err(|e| e.to_string()));
-            if let Err(reason) = done {
+            if let Err(reason) = repeat(&mut variants, &line, sources) {
                 lost = Some(reason);
                 break;
             }
@@ -272,7 +282,7 @@ impl LeftBehind {
         self.journal.seek(SeekFrom::End(0)).map_err(failed("going to its end"))?;
         let disk = ToDisk::start(&[&self.journal]).map_err(failed("preparing it"))?;
         let journal = Journal { folder: self.folder, file: self.journal, disk };
-        Ok(Recovered { document, journal, lost })
+        Ok(Recovered { variants, journal, lost })
     }
 
     /// Throws the session away.
@@ -280,6 +290,19 @@ impl LeftBehind {
         drop(self.journal);
         let _ = fs::remove_dir_all(&self.folder);
     }
+}
+
+/// Does again what a line says.
+///
+/// Errors: a line that says nothing, or something that cannot be done; why, in words.
+fn repeat(variants: &mut Variants, line: &[u8], sources: &mut dyn SceneSources) -> Result<(), String> {
+    if line.starts_with(b"{\"variant\":") {
+        let vary = serde_json::from_slice(line).map_err(|e| e.to_string())?;
+        return variants.vary(vary).map_err(|e| e.to_string());
+    }
+    let entry = JournalEntry::from_line(line, variants.document().scene(), sources);
+    let done = entry.map_err(|e| e.to_string())?;
+    variants.repeat(done).map(drop).map_err(|e| e.to_string())
 }
 
 /// Errors: a line that is no header of this version.

@@ -33,6 +33,7 @@ pub mod pen;
 pub mod placing;
 mod pointing;
 pub mod seams;
+mod portraits;
 pub mod settings;
 pub mod several;
 pub mod solid;
@@ -40,6 +41,7 @@ pub mod stage;
 mod theme;
 pub mod thumbnail;
 pub mod trace;
+pub mod variants;
 mod view;
 pub mod workbench;
 

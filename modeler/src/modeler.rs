@@ -4,6 +4,7 @@ mod add;
 mod files;
 mod parts;
 
+pub(crate) use add::added;
 pub use files::{Fetched, How, Newcomer};
 
 use crate::brought::newest;
@@ -22,10 +23,12 @@ use crate::pad::{Pad, Stroked};
 use crate::panels;
 use crate::pen::Pen;
 use crate::pointing::Pointing;
+use crate::portraits::Portraits;
 use crate::settings::{Settings, Theme};
 use crate::solid::{Asking, Solid, SolidMaker};
 use crate::stage::Stage;
 use crate::trace::{Trace, Wait};
+use crate::variants::Vary;
 use crate::view::{self, ViewState};
 use crate::workbench::{EditError, Workbench};
 use blobtree::{Aabb, Command, JournalEntry, NodePath, NodeRef};
@@ -91,6 +94,7 @@ pub struct Modeler {
     /// The tree of which the solid was asked for last, and whether with its seams.
     asked: Option<(NodeRef, bool)>,
     thinker: Thinker,
+    portraits: Portraits,
     /// Called when a background thread has something to show.
     wake: Arc<dyn Fn() + Send + Sync>,
     /// Where sessions are kept; nowhere in tests that do not want them.
@@ -144,6 +148,7 @@ impl Modeler {
             solid: None,
             asked: None,
             thinker: Thinker::start(wake.clone())?,
+            portraits: Portraits::default(),
             wake,
             sessions,
         })
@@ -356,6 +361,24 @@ impl Modeler {
                 kept
             }
         }
+    }
+
+    /// Does something to variants, and tells the user if it cannot be done.
+    pub fn vary(&mut self, vary: Vary) {
+        if let Err(error) = self.bench.vary(vary) {
+            self.notices.warn(error.to_string());
+        }
+        self.form = None;
+        self.hovered = None;
+    }
+
+    /// The pictures of trees, as far as they are drawn.
+    pub(crate) fn portraits(
+        &mut self,
+        roots: &[NodeRef],
+        ctx: &egui::Context,
+    ) -> Vec<Option<egui::TextureHandle>> {
+        self.portraits.get(roots, ctx, &self.wake)
     }
 
     /// Carries out a command.

@@ -2,6 +2,7 @@
 
 use crate::journal::{Journal, JournalError, Recovered};
 use crate::several;
+use crate::variants::{Variants, Vary, VaryError};
 use blobtree::build::union;
 use blobtree::{
     Change, Command, CommandError, Document, JournalEntry, Node, NodePath, NodeRef, Scene, SceneError,
@@ -11,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// A document being worked on.
 #[derive(Debug)]
 pub struct Workbench {
-    document: Document,
+    variants: Variants,
     /// Where everything done is written first; none if that is not possible or not wanted.
     journal: Option<Journal>,
     /// The folder for journals, if one is wanted.
@@ -20,12 +21,29 @@ pub struct Workbench {
     broken: Option<Journal>,
     /// The user's file, if there is one.
     file: Option<PathBuf>,
-    /// The scene as it was opened or saved.
-    saved: Scene,
+    /// What was opened or saved; none if it is in no file.
+    saved: Option<Snapshot>,
     /// The selected nodes, sorted; always ones that are there, and none below another one.
     selection: Vec<NodePath>,
     /// What is shown instead of the document while something is dragged.
     preview: Option<Scene>,
+}
+
+/// What is in a file, by the addresses of the roots of all variants.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    title: Option<String>,
+    roots: Vec<(String, NodeRef)>,
+}
+
+impl PartialEq for Snapshot {
+    fn eq(&self, other: &Self) -> bool {
+        let same =
+            |((a, x), (b, y)): (&(String, NodeRef), &(String, NodeRef))| a == b && NodeRef::ptr_eq(x, y);
+        self.title == other.title
+            && self.roots.len() == other.roots.len()
+            && self.roots.iter().zip(&other.roots).all(same)
+    }
 }
 
 /// What became of something that was to be done.
@@ -34,6 +52,9 @@ pub enum EditError {
     /// It cannot be carried out; nothing has changed.
     #[error("{0}")]
     Command(#[from] CommandError),
+    /// It cannot be done to variants; nothing has changed.
+    #[error("{0}")]
+    Vary(#[from] VaryError),
     /// It was carried out, but cannot be kept: a crash would lose it. Whatever is done next tries again.
     #[error("what you do can no longer be protected against a crash ({0}); save your work")]
     Journal(Box<JournalError>),
@@ -54,36 +75,37 @@ impl Workbench {
         file: Option<PathBuf>,
         sessions: Option<&Path>,
     ) -> Result<(Self, Option<JournalError>), SceneError> {
-        let document = Document::new(scene.clone())?;
+        let variants = Variants::of(scene.clone())?;
         let journal =
             sessions.map(|sessions| Journal::begin(sessions, &scene, file.as_deref(), false)).transpose();
         let (journal, error) = match journal {
             Ok(journal) => (journal, None),
             Err(error) => (None, Some(error)),
         };
-        let bench = Self {
-            document,
+        let mut bench = Self {
+            variants,
             journal,
             sessions: sessions.map(Path::to_path_buf),
             broken: None,
             file,
-            saved: scene,
+            saved: None,
             selection: Vec::new(),
             preview: None,
         };
+        bench.saved = Some(bench.snapshot());
         Ok((bench, error))
     }
 
     /// A table with what was brought back from a session that was left behind in `sessions`; not saved.
     pub fn recovered(recovered: Recovered, file: Option<PathBuf>, sessions: Option<&Path>) -> Self {
-        let Recovered { document, journal, .. } = recovered;
+        let Recovered { variants, journal, .. } = recovered;
         Self {
-            document,
+            variants,
             journal: Some(journal),
             sessions: sessions.map(Path::to_path_buf),
             broken: None,
             file,
-            saved: Scene::new(empty()),
+            saved: None,
             selection: Vec::new(),
             preview: None,
         }
@@ -94,19 +116,24 @@ impl Workbench {
         Scene::new(empty())
     }
 
-    /// The document.
+    /// The document in hand.
     pub fn document(&self) -> &Document {
-        &self.document
+        self.variants.document()
+    }
+
+    /// The document with those that are kept beside it.
+    pub fn variants(&self) -> &Variants {
+        &self.variants
     }
 
     /// The scene as it is.
     pub fn scene(&self) -> &Scene {
-        self.document.scene()
+        self.variants.document().scene()
     }
 
     /// The scene as it is to be shown: with what is being dragged.
     pub fn shown(&self) -> &Scene {
-        self.preview.as_ref().unwrap_or(self.document.scene())
+        self.preview.as_ref().unwrap_or(self.variants.document().scene())
     }
 
     /// Whether something is being dragged.
@@ -121,8 +148,13 @@ impl Workbench {
 
     /// Whether anything was done since the scene was opened or saved, and not undone.
     pub fn is_unsaved(&self) -> bool {
-        let now = self.scene();
-        !NodeRef::ptr_eq(&now.root, &self.saved.root) || now.title != self.saved.title
+        self.saved.as_ref() != Some(&self.snapshot())
+    }
+
+    /// The document as it is now.
+    pub fn snapshot(&self) -> Snapshot {
+        let roots = self.variants.all().map(|(name, root, _)| (name.to_owned(), root.clone())).collect();
+        Snapshot { title: self.scene().title.clone(), roots }
     }
 
     /// Whether everything done is on disk.
@@ -176,13 +208,33 @@ impl Workbench {
         self.preview = None;
         if let JournalEntry::Command(command) = &entry {
             // What cannot be carried out must not be in the journal.
-            self.document.preview(command.clone())?;
+            self.variants.document().preview(command.clone())?;
         }
-        let written =
-            self.journal.as_mut().map_or(Ok(()), |journal| journal.add(&entry, self.document.scene()));
-        let change = self.document.repeat(entry)?;
+        let written = self
+            .journal
+            .as_mut()
+            .map_or(Ok(()), |journal| journal.add(&entry, self.variants.document().scene()));
+        let change = self.variants.repeat(entry)?;
         let selection = std::mem::take(&mut self.selection);
         self.select_all(selection);
+        self.keep(written)?;
+        Ok(change)
+    }
+
+    /// Does something to variants: writes it to the journal, and carries it out.
+    pub fn vary(&mut self, vary: Vary) -> Result<(), EditError> {
+        self.preview = None;
+        // What cannot be carried out must not be in the journal.
+        let mut variants = self.variants.clone();
+        variants.vary(vary.clone())?;
+        let written = self.journal.as_mut().map_or(Ok(()), |journal| journal.add_vary(&vary));
+        self.variants = variants;
+        self.select(None);
+        self.keep(written)
+    }
+
+    /// Sees to it that what was done is protected, if it could not be `written`.
+    fn keep(&mut self, written: Result<(), JournalError>) -> Result<(), EditError> {
         if let Err(error) = written {
             self.broken = self.journal.take();
             self.protect().map_err(|_| error)?;
@@ -190,7 +242,7 @@ impl Workbench {
             // The disk may still be full; the user knows.
             let _ = self.protect();
         }
-        Ok(change)
+        Ok(())
     }
 
     /// Begins another journal with the scene as it is, if one is wanted.
@@ -199,7 +251,7 @@ impl Workbench {
     fn protect(&mut self) -> Result<(), JournalError> {
         let Some(sessions) = &self.sessions else { return Ok(()) };
         let file = self.file.as_deref();
-        self.journal = Some(Journal::begin(sessions, self.document.scene(), file, self.is_unsaved())?);
+        self.journal = Some(Journal::begin(sessions, &self.variants.whole(), file, self.is_unsaved())?);
         if let Some(broken) = self.broken.take() {
             broken.end();
         }
@@ -216,15 +268,20 @@ impl Workbench {
     /// Errors: a command that cannot be carried out; then the document is shown.
     pub fn drag(&mut self, command: Option<Command>) -> Result<(), CommandError> {
         self.preview = None;
-        self.preview = command.map(|command| self.document.preview(command)).transpose()?;
+        self.preview = command.map(|command| self.variants.document().preview(command)).transpose()?;
         Ok(())
     }
 
-    /// The scene, or an earlier one if it is no longer `as_it_is`, was saved to this file, which is the user's from now
-    /// on.
-    pub fn saved_as(&mut self, file: PathBuf, as_it_is: bool) {
-        self.saved = if as_it_is { self.scene().clone() } else { Scene::new(empty()) };
-        self.file = Some(file);
+    /// What was saved is in this file, which is the user's from now on.
+    pub fn saved_as(&mut self, file: PathBuf, saved: Snapshot) {
+        (self.saved, self.file) = (Some(saved), Some(file));
+    }
+
+    /// Names meshes that are named from one folder from another; whether that changed anything.
+    ///
+    /// Errors: a mesh or a folder that is not there; then nothing has changed.
+    pub fn rename_meshes(&mut self, from: &Path, to: &Path) -> std::io::Result<bool> {
+        self.variants.rename_meshes(from, to)
     }
 
     /// The scene is in no file, but this is the one that it may be saved as.
@@ -234,7 +291,7 @@ impl Workbench {
 
     /// The scene is in no file, whatever [`Self::file`] says it may be saved as.
     pub fn never_saved(&mut self) {
-        self.saved = Scene::new(empty());
+        self.saved = None;
     }
 
     /// Begins another journal, with the scene as it is: what the one so far says is no longer true of its files.

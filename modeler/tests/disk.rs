@@ -86,7 +86,7 @@ fn a_full_disk_is_told_and_costs_nothing_that_was_done() {
     let best = left.into_iter().max_by_key(|session| session.steps).expect("a session");
     let recovered = best.recover(&mut *TestDesk.sources(None)).expect("it is sound");
     assert_eq!(recovered.lost, None);
-    assert!(recovered.document.scene().root.children().len() > 3);
+    assert!(recovered.variants.document().scene().root.children().len() > 3);
 }
 
 #[test]
@@ -122,5 +122,5 @@ fn work_is_protected_again_as_soon_as_the_disk_has_room() {
     // Nothing more was done in the new session, and still it is offered.
     let left = LeftBehind::all(&sessions).pop().expect("it was left behind");
     let recovered = left.recover(&mut *TestDesk.sources(None)).expect("it is sound");
-    assert_eq!(recovered.document.scene(), &scene);
+    assert_eq!(recovered.variants.document().scene(), &scene);
 }

@@ -11,6 +11,7 @@ use egui::{Key, Modifiers};
 use fastrand::Rng;
 use modeler::desk::Desk as _;
 use modeler::journal::LeftBehind;
+use modeler::variants::{Variants, Vary};
 use std::fs::{self, File};
 use std::io::Write as _;
 use std::path::Path;
@@ -37,9 +38,9 @@ fn state(scene: &Scene, undo: usize, redo: usize) -> String {
     format!("{:016x}/{undo}/{redo}", hasher.finish())
 }
 
-fn state_of(screen: &Screen) -> String {
-    let document = screen.state().bench.document();
-    state(document.scene(), document.undo_names().count(), document.redo_names().count())
+fn state_of(variants: &Variants) -> String {
+    let document = variants.document();
+    state(&variants.whole(), document.undo_names().count(), document.redo_names().count())
 }
 
 /// The process that edits, and says in a file what it is about to do and what it shows.
@@ -54,7 +55,7 @@ fn editor() {
     trees.depth = 3;
     let mut tell =
         |word: &str, state: &str| told.write_all(format!("{word} {state}\n").as_bytes()).expect("room");
-    tell("shown", &state_of(&screen));
+    tell("shown", &state_of(screen.state().bench.variants()));
     // More than there is time for.
     for step in 0..100_000 {
         match rng.u32(..12) {
@@ -64,7 +65,15 @@ fn editor() {
             3 => {
                 // Saving must neither change nor lose anything.
                 assert!(save(&mut screen, folder.join("saved.trullo")));
-                tell("saved", &state_of(&screen));
+                tell("saved", &state_of(screen.state().bench.variants()));
+            }
+            4 => {
+                let vary = vary(&mut rng, screen.state().bench.variants());
+                let mut next = screen.state().bench.variants().clone();
+                if next.vary(vary.clone()).is_ok() {
+                    tell("next", &state_of(&next));
+                    screen.state_mut().vary(vary);
+                }
             }
             _ => {
                 let command = command(&mut rng, &mut trees, &screen.state().bench.scene().root);
@@ -73,24 +82,34 @@ fn editor() {
             }
         }
         screen.step();
-        tell("shown", &state_of(&screen));
+        tell("shown", &state_of(screen.state().bench.variants()));
+    }
+}
+
+/// Something that the panel of variants might do.
+fn vary(rng: &mut Rng, variants: &Variants) -> Vary {
+    let names: Vec<&str> = variants.all().map(|(name, ..)| name).collect();
+    let name = names[rng.usize(..names.len())].to_owned();
+    match rng.u32(..5) {
+        0 | 1 => Vary::Keep { name: variants.free_name() },
+        2 => Vary::Switch { name },
+        3 => Vary::Remove { name },
+        _ => Vary::Rename { name, to: format!("renamed {}", rng.u32(..9)) },
     }
 }
 
 /// Says what the document will be after a command, if it can be carried out.
 fn about_to(screen: &Screen, command: &Command, tell: &mut impl FnMut(&str, &str)) {
-    let document = screen.state().bench.document();
-    if let Ok(scene) = document.preview(command.clone()) {
-        tell("next", &state(&scene, document.undo_names().count() + 1, 0));
+    let mut variants = screen.state().bench.variants().clone();
+    if variants.repeat(JournalEntry::Command(command.clone())).is_ok() {
+        tell("next", &state_of(&variants));
     }
 }
 
 fn undo_or_redo(screen: &mut Screen, undo: bool, tell: &mut impl FnMut(&str, &str)) {
-    let mut document = screen.state().bench.document().clone();
-    let done = if undo { document.undo() } else { document.redo() };
-    if done.is_some() {
-        let counts = [document.undo_names().count(), document.redo_names().count()];
-        tell("next", &state(document.scene(), counts[0], counts[1]));
+    let mut variants = screen.state().bench.variants().clone();
+    if let Ok(Some(_)) = variants.repeat(if undo { JournalEntry::Undo } else { JournalEntry::Redo }) {
+        tell("next", &state_of(&variants));
     }
     screen.key_press_modifiers(Modifiers::COMMAND, if undo { Key::Z } else { Key::Y });
 }
@@ -150,9 +169,7 @@ fn brought_back(folder: &Path, seed: u64) -> Option<String> {
     let recovered = left.pop()?.recover(&mut *desk.sources(None));
     let recovered = recovered.unwrap_or_else(|e| panic!("seed {seed}: {e}"));
     assert_eq!(recovered.lost, None, "seed {seed}");
-    let document = &recovered.document;
-    let counts = [document.undo_names().count(), document.redo_names().count()];
-    Some(state(document.scene(), counts[0], counts[1]))
+    Some(state_of(&recovered.variants))
 }
 
 #[test]

@@ -73,7 +73,7 @@ fn beside(model: &NodeRef, part: NodeRef) -> NodeRef {
 }
 
 /// What adds a node to a tree, and where it is then.
-fn added(root: &NodeRef, node: NodeRef) -> (Command, NodePath) {
+pub(crate) fn added(root: &NodeRef, node: NodeRef) -> (Command, NodePath) {
     let top = NodePath::default();
     match &root.shape {
         Shape::Operator(Operator::Union, children) => {

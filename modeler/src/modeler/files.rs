@@ -5,9 +5,9 @@ use crate::desk::Opened;
 use crate::dialog::{Dialog, Then};
 use crate::errand::{Kind, Undone, Watch};
 use crate::journal::{LeftBehind, Recovered};
-use crate::meshes;
-use crate::workbench::{EditError, Workbench};
-use blobtree::{Aabb, DEFAULT_OLDER_VERSIONS, NodeRef, Scene, write_atomically};
+use crate::variants::Variants;
+use crate::workbench::{EditError, Snapshot, Workbench};
+use blobtree::{Aabb, DEFAULT_OLDER_VERSIONS, Scene, write_atomically};
 use std::path::{Path, PathBuf};
 
 /// What is to become of a file that is read.
@@ -188,15 +188,17 @@ impl Modeler {
 
     /// Saves the document to a file, which is the user's when that is done; then goes on.
     pub fn save_to(&mut self, file: PathBuf, then: Option<Then>) {
-        let (scene, from, document) = (self.bench.scene().clone(), self.folder(), self.documents);
+        let (variants, from, document) = (self.bench.variants().clone(), self.folder(), self.documents);
+        let snapshot = self.bench.snapshot();
         self.errands.begin(Kind::Save, format!("Saving {}", name(&file)), move |watch| {
-            let saved = save(&scene, &from, &file, watch);
+            let root = variants.document().scene().root.clone();
+            let saved = save(variants, &from, &file, watch);
             Box::new(move |modeler| match saved {
                 Ok(()) => {
                     modeler.notices.tell("Saved.");
-                    modeler.kept.remember(&file, &scene.root);
+                    modeler.kept.remember(&file, &root);
                     if modeler.documents == document {
-                        modeler.saved(&scene.root, file, scene.title.as_ref());
+                        modeler.saved(snapshot, file);
                         then.into_iter().for_each(|then| Dialog::begin(modeler, then));
                     }
                 }
@@ -205,20 +207,14 @@ impl Modeler {
         });
     }
 
-    /// The document, as it was with this root and title, is in the file now; and so are the names of its meshes.
-    fn saved(&mut self, root: &NodeRef, file: PathBuf, title: Option<&String>) {
-        let is_same =
-            NodeRef::ptr_eq(root, &self.bench.scene().root) && title == self.bench.scene().title.as_ref();
-        let commands = meshes::renamed(&self.bench.scene().root, &self.folder(), &folder_of(&file));
-        let commands = commands.unwrap_or_else(|error| {
+    /// The document, as it was then, is in the file now; and so are the names of its meshes.
+    fn saved(&mut self, then: Snapshot, file: PathBuf) {
+        let is_same = then == self.bench.snapshot();
+        let renames = self.bench.rename_meshes(&self.folder(), &folder_of(&file)).unwrap_or_else(|error| {
             self.notices.warn(format!("A mesh of the scene is no longer there: {error}"));
-            Vec::new()
+            false
         });
-        let renames = !commands.is_empty();
-        commands.into_iter().for_each(|command| {
-            self.apply(command);
-        });
-        self.bench.saved_as(file, is_same);
+        self.bench.saved_as(file, if is_same { self.bench.snapshot() } else { then });
         if renames && let Err(error) = self.bench.begin_journal() {
             self.notices.warn(EditError::from(error).to_string());
         }
@@ -276,7 +272,7 @@ impl Modeler {
 
     /// Writes the mesh of the scene.
     pub fn export_to(&mut self, path: PathBuf) {
-        let (desk, scene, options) = (self.desk.clone(), self.bench.scene().clone(), self.settings.export);
+        let (desk, scene, options) = (self.desk.clone(), self.bench.variants().whole(), self.settings.export);
         self.errands.begin(Kind::Export, format!("Exporting {}", name(&path)), move |watch| {
             let written = desk.export(&scene, &path, &options, watch);
             Box::new(move |modeler| match written {
@@ -294,13 +290,15 @@ impl Modeler {
     }
 }
 
-/// Writes a scene that names its meshes from one folder to a file that may be in another.
-fn save(scene: &Scene, from: &Path, file: &Path, watch: &Watch) -> Result<(), Undone> {
+/// Writes variants that name their meshes from one folder to a file that may be in another.
+fn save(mut variants: Variants, from: &Path, file: &Path, watch: &Watch) -> Result<(), Undone> {
     watch.report("writing", None);
     let failed = |error: &dyn std::fmt::Display| Undone::Failed(error.to_string());
-    let scene = meshes::moved(scene, from, &folder_of(file))
+    variants
+        .rename_meshes(from, &folder_of(file))
         .map_err(|e| failed(&format!("a mesh of the scene, or the folder, is not there: {e}")))?;
-    let text = scene.to_text().map_err(|e| failed(&format!("the scene cannot be written: {e}")))?;
+    let text =
+        variants.whole().to_text().map_err(|e| failed(&format!("the scene cannot be written: {e}")))?;
     if watch.cancel.is_cancelled() {
         return Err(Undone::Stopped);
     }

@@ -8,6 +8,7 @@ pub(crate) mod recent;
 mod several;
 mod status;
 mod tree;
+mod variants;
 
 pub use tree::{rule, title};
 
@@ -29,6 +30,8 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
             parameters::show(modeler, ui);
             ui.add_space(8.0);
             history::show(modeler, ui);
+            ui.add_space(8.0);
+            variants::show(modeler, ui);
         });
     });
 }
