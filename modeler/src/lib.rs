@@ -10,6 +10,7 @@
 
 mod brought;
 pub mod camera;
+pub mod cutting;
 pub mod desk;
 pub mod dialog;
 pub mod errand;

@@ -9,6 +9,7 @@ pub use files::{Fetched, How, Newcomer};
 
 use crate::brought::newest;
 use crate::camera::{Camera, Side};
+use crate::cutting::{Cut, KnownCut};
 use crate::desk::Desk;
 use crate::dialog::Dialog;
 use crate::errand::Errands;
@@ -85,6 +86,8 @@ pub struct Modeler {
     hovered_box: NodeBox,
     /// Around the selected nodes before they were dragged.
     held_box: Option<Aabb>,
+    /// What the selected node is cut out of.
+    cut: KnownCut,
     /// The form of the selected node, and the scene it was made for.
     pub(crate) form: Option<(NodeRef, Form)>,
     /// The file to be opened as soon as the size of the view is known, which drawings need.
@@ -142,6 +145,7 @@ impl Modeler {
             boxes: Vec::new(),
             hovered_box: NodeBox::default(),
             held_box: None,
+            cut: KnownCut::default(),
             form: None,
             waiting: None,
             solids,
@@ -293,6 +297,8 @@ impl Modeler {
             known.follow(root, Some(path));
         }
         self.hovered_box.follow(root, self.hovered.as_ref());
+        let primitive = self.bench.selected().and_then(|path| view::primitive_at(root, path));
+        self.cut.follow(root, primitive.as_ref());
         if NodeRef::ptr_eq(root, &self.bench.scene().root) {
             self.held_box = self.selected_box();
         }
@@ -301,6 +307,11 @@ impl Modeler {
     /// Around the selected nodes before the hand took hold of them, mm.
     pub(crate) fn held_box(&self) -> Option<Aabb> {
         self.held_box
+    }
+
+    /// The selected part as a cut, if it is one.
+    pub fn selected_cut(&self) -> Option<&Cut> {
+        self.cut.cut.as_ref()
     }
 
     /// Around the solid of the node that the pointer is over in the tree, mm.

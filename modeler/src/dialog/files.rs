@@ -107,7 +107,7 @@ fn options(ui: &mut Ui, options: &mut ExportOptions, format: &str) {
         let drag = DragValue::new(&mut options.tolerance_mm)
             .range(ExportOptions::TOLERANCES)
             .speed(0.001)
-            .suffix(" mm");
+            .custom_formatter(|mm, _| if mm > 0.0 { format!("{mm:.3} mm") } else { "keep all".into() });
         ui.add(drag).labelled_by(label.id);
         ui.end_row();
         match format {

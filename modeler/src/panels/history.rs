@@ -9,8 +9,17 @@ const SHOWN: usize = 60;
 /// Shows it, the latest first.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     let document = modeler.bench.document();
-    let forward: Vec<String> = document.redo_names().take(SHOWN).map(str::to_owned).collect();
-    let back: Vec<String> = document.undo_names().take(SHOWN).map(str::to_owned).collect();
+    let done = document.undo_names().count();
+    // Steps of the same name are told apart by their numbers.
+    let numbered = |number: usize, name: &str| format!("{number}. {name}");
+    let forward: Vec<String> = document
+        .redo_names()
+        .take(SHOWN)
+        .zip(done + 1..)
+        .map(|(name, number)| numbered(number, name))
+        .collect();
+    let back: Vec<String> =
+        document.undo_names().take(SHOWN).enumerate().map(|(ago, name)| numbered(done - ago, name)).collect();
     let mut go = None;
     CollapsingHeader::new("History").default_open(true).show(ui, |ui| {
         for (i, name) in forward.iter().enumerate().rev() {
@@ -24,8 +33,11 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
                 go = Some(i as isize);
             }
         }
-        if ui.add(egui::Button::selectable(back.is_empty(), "The beginning")).clicked() {
-            go = Some(back.len() as isize);
+        if done > back.len() {
+            ui.weak(format!("and {} earlier steps", done - back.len()));
+        }
+        if ui.add(egui::Button::selectable(done == 0, "The beginning")).clicked() {
+            go = Some(done as isize);
         }
     });
     if let Some(steps) = go.filter(|steps| *steps != 0) {

@@ -2,6 +2,7 @@
 
 use super::several;
 use super::tree::{operators, title};
+use crate::cutting::Cut;
 use crate::form::{Field, Form, Kind, numbers};
 use crate::modeler::Modeler;
 use blobtree::{Color, Command, NewShape, NodePath, NodeRef, Shape};
@@ -33,8 +34,10 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     ui.strong(title(&node));
     let mut command = about(ui, &node, &path);
     command = command.or_else(|| combined(modeler, ui, &path));
+    command = command.or_else(|| cut(modeler, ui));
     refresh_form(modeler, &path);
-    let wish = modeler.form.as_ref().and_then(|(_, form)| fields(ui, form));
+    let is_through = modeler.selected_cut().is_some_and(Cut::is_through);
+    let wish = modeler.form.as_ref().and_then(|(_, form)| fields(ui, form, is_through));
     if let Some(command) = command {
         modeler.apply(command);
     }
@@ -107,6 +110,17 @@ fn combined(modeler: &Modeler, ui: &mut Ui, path: &NodePath) -> Option<Command> 
     command
 }
 
+/// Whether a hole goes through everything.
+fn cut(modeler: &Modeler, ui: &mut Ui) -> Option<Command> {
+    let path = crate::view::primitive_at(&modeler.bench.shown().root, modeler.bench.selected()?)?;
+    let cut = modeler.selected_cut()?;
+    let mut through = cut.is_through();
+    let switch = ui.checkbox(&mut through, "Through everything");
+    let help = "Off: the hole ends in the middle, and its length can be set";
+    let shape = NewShape::Primitive(cut.going(through));
+    switch.on_hover_text(help).changed().then_some(Command::SetShape { path, shape })
+}
+
 /// Makes the form anew if the node has changed.
 fn refresh_form(modeler: &mut Modeler, path: &NodePath) {
     let shown = modeler.bench.shown();
@@ -116,10 +130,12 @@ fn refresh_form(modeler: &mut Modeler, path: &NodePath) {
     }
 }
 
-fn fields(ui: &mut Ui, form: &Form) -> Option<Wish> {
+/// All fields; without those that mean nothing to a hole through everything.
+fn fields(ui: &mut Ui, form: &Form, is_through: bool) -> Option<Wish> {
     let mut wish = None;
     Grid::new("fields").num_columns(2).striped(true).show(ui, |ui| {
-        for (index, field) in form.fields.iter().enumerate() {
+        let means_something = |field: &Field| !(is_through && ["Length", "Offset"].contains(&&*field.label));
+        for (index, field) in form.fields.iter().enumerate().filter(|(_, field)| means_something(field)) {
             let label = ui.label(&field.label).on_hover_text(&field.help);
             ui.vertical(|ui| {
                 if let Some((value, is_final)) = editor(ui, field, &label) {

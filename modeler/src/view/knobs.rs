@@ -3,9 +3,10 @@
 //! A knob stands off the part in the direction in which its number grows, as seen on the screen, so that it follows the
 //! hand. Where that direction points to the eye, it stands below, to the left, and grows outwards.
 
+use crate::cutting::{Cut, world_from_node};
 use crate::modeler::Modeler;
 use blobtree::{Command, NewShape, NodePath, NodeRef, Operator, Primitive, Shape, Sharpness, SketchPlane};
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use sketch::suggest::View;
 
 /// How near a pen must come to a knob, points.
@@ -129,7 +130,7 @@ pub fn command(modeler: &Modeler, turns: Turns, value: f32) -> Option<Command> {
 }
 
 /// The primitive at a path, or below the warps there.
-fn primitive_at(root: &NodeRef, path: &NodePath) -> Option<NodePath> {
+pub fn primitive_at(root: &NodeRef, path: &NodePath) -> Option<NodePath> {
     let mut path = path.clone();
     loop {
         match &path.find(root)?.shape {
@@ -192,20 +193,11 @@ fn sized(primitive: &Primitive, value: f32) -> Option<Primitive> {
     Some(primitive)
 }
 
-/// From the space of the node at a path to the world; `None` below warps that bend space.
-fn world_from_node(root: &NodeRef, path: &NodePath) -> Option<Affine3A> {
-    let mut all = Affine3A::IDENTITY;
-    let mut node = root;
-    for &index in &path.0 {
-        if let Shape::Warp(warp, _) = &node.shape {
-            all *= warp.parent_from_child()?;
-        }
-        node = node.children().get(index)?;
-    }
-    Some(all)
-}
-
 fn size(modeler: &Modeler, root: &NodeRef, selected: &NodePath) -> Option<Knob> {
+    // The length of what goes through everything says nothing.
+    if modeler.selected_cut().is_some_and(Cut::is_through) {
+        return None;
+    }
     let path = primitive_at(root, selected)?;
     let Shape::Primitive(primitive) = &path.find(root)?.shape else { return None };
     let (label, value, plane) = number(primitive)?;

@@ -77,6 +77,8 @@ pub fn knobs(modeler: &Modeler) -> Vec<(String, Vec2)> {
     knobs::Knob::all(modeler).into_iter().map(|knob| (knob.text(), knob.at)).collect()
 }
 
+pub use knobs::primitive_at;
+
 /// A place of the view on the screen.
 fn on_screen(place: Vec2, response: &Response) -> Pos2 {
     response.rect.min + egui::vec2(place.x, place.y)

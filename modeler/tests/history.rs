@@ -1,0 +1,29 @@
+//! What was done, to be read and gone back to, by the names that are on the screen.
+
+mod common;
+
+use common::*;
+use egui::vec2;
+
+#[test]
+fn one_goes_back_to_any_step_and_forward_again() {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 110.0));
+    press(&mut screen, "Inflate");
+    draw(&mut screen, circle(at + vec2(110.0, 0.0), 60.0));
+    press(&mut screen, "Grow");
+    screen.state_mut().duplicate_selected();
+    settle(&mut screen);
+    let parts = |screen: &Screen| screen.state().bench.scene().root.children().len();
+    let names: Vec<String> = screen.state().bench.document().undo_names().map(str::to_owned).collect();
+    let after = screen.state().bench.scene().clone();
+    assert_eq!(names.len(), 3);
+    press(&mut screen, "The beginning");
+    assert_eq!(parts(&screen), 0);
+    assert_eq!(screen.state().bench.document().redo_names().count(), 3);
+    press(&mut screen, &format!("2. {}", names[1]));
+    assert_eq!(screen.state().bench.document().undo_names().count(), 2);
+    press(&mut screen, &format!("3. {}", names[0]));
+    assert_eq!(screen.state().bench.scene(), &after);
+}
