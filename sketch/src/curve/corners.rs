@@ -7,7 +7,7 @@ use glam::DVec2;
 /// and single samples of a simplified line are corners; longer, and the tips of slim ellipses are.
 const REACH: f64 = 0.025;
 /// With more noise than this, in extents, a direction needs
-const STEADY: f64 = 5e-4;
+pub(super) const STEADY: f64 = 5e-4;
 /// at least so many samples, but no more than this length, in extents: longer, and the tips of ellipses are corners.
 const LEAST_IN_REACH: f64 = 5.;
 const FARTHEST_FOR_THAT: f64 = 0.06;

@@ -2,16 +2,20 @@
 
 use super::Contour;
 use super::banded;
-use super::corners::{self, Closed, Wishes, meeting};
+use super::corners::{self, Closed, STEADY, Wishes, meeting};
 use super::cut_corners::restored;
 use super::line::{Sample, are_sparse, noise, noise_between};
 use super::polygon;
+use super::way::Between;
 use glam::DVec2;
 
 /// Nearer than this to the first sample, in extents, the last one repeats it.
 const REPETITION: f64 = 1e-6;
 /// Longest step between samples, in extents; longer edges get samples on their way.
 const STEP: f64 = 0.012;
+/// Where a line turns further than this at a sample, radians, it does not go on along an arc: circles of twelve samples
+/// turn by half a radian.
+const MOST_TURN: f64 = 0.7;
 /// What a sample put on the way counts beside one of the pen: the edge is a guess between two places that are not.
 const WEIGHT_ON_THE_WAY: f64 = 0.02;
 /// Shortest step between points of the result, in extents.
@@ -33,6 +37,8 @@ struct Sides {
     runs: Vec<Vec<Sample>>,
     /// The corner's sample before each run.
     corners: Vec<Sample>,
+    /// Whether that is just where the corner is.
+    exact: Vec<bool>,
     extent: f64,
     noise: f64,
     /// Whether only places were kept at which the line bends: tips among them.
@@ -52,7 +58,7 @@ pub(super) fn fair(samples: &[Sample], wishes: &Wishes) -> Option<Contour> {
     let sparse = are_sparse(samples);
     let restored = restored(samples, extent);
     let noise = noise_between(&restored.samples, &restored.corners);
-    let dense = densified(&restored.samples, STEP * extent);
+    let dense = densified(&restored.samples, &restored.corners, STEP * extent);
     let lengths = lengths(&dense);
     let known = restored.places_in(&dense);
     let line = Closed { samples: &dense, lengths: &lengths, extent, noise, sparse, known: &known };
@@ -71,7 +77,8 @@ pub(super) fn fair(samples: &[Sample], wishes: &Wishes) -> Option<Contour> {
 /// The smooth line that the samples of an open line mean, from end to end.
 pub(super) fn fair_open(samples: &[Sample]) -> Vec<DVec2> {
     let extent = super::line::extent(samples);
-    let mut run = densified(samples, STEP * extent);
+    let ends = [0, samples.len() - 1];
+    let mut run = densified(samples, &ends, STEP * extent);
     if let Some(last) = run.iter().rposition(|sample| sample.weight > 0.5) {
         // What was put between the last sample and the first would close it.
         run.truncate(last + 1);
@@ -82,7 +89,7 @@ pub(super) fn fair_open(samples: &[Sample]) -> Vec<DVec2> {
     let corners = vec![run[0]];
     let sparse = are_sparse(samples);
     let noise = if sparse { THINNED_OUT } else { noise(samples) };
-    let sides = Sides { runs: vec![run], corners, extent, noise, sparse };
+    let sides = Sides { runs: vec![run], corners, exact: vec![true], extent, noise, sparse };
     least_expected_error(&sides).concat()
 }
 
@@ -111,20 +118,36 @@ fn untangle(contour: &mut Contour, longest: f64) {
     }
 }
 
-fn densified(samples: &[Sample], step: f64) -> Vec<Sample> {
-    let mut dense = Vec::with_capacity(samples.len());
+/// A closed line with samples on the long ways between others: on the smooth way, but for corners and lines that were
+/// thinned out.
+fn densified(samples: &[Sample], corners: &[usize], step: f64) -> Vec<Sample> {
+    let n = samples.len();
+    let mut dense = Vec::with_capacity(n);
     let step = step.max(1e-9);
-    for (&a, &b) in samples.iter().zip(samples.iter().cycle().skip(1)) {
+    let sharp: Vec<bool> = (0..n).map(|i| corners.binary_search(&i).is_ok() || bends(samples, i)).collect();
+    for i in 0..n {
+        let next = (i + 1) % n;
+        let (a, b) = (samples[i], samples[next]);
         dense.push(a);
         let pieces = (a.at.distance(b.at) / step).ceil().clamp(1., 200.) as usize;
         let weight = WEIGHT_ON_THE_WAY * a.weight.min(b.weight);
-        dense.extend((1..pieces).map(|i| {
-            let share = i as f64 / pieces as f64;
+        let before = (!sharp[i]).then(|| samples[(i + n - 1) % n].at);
+        let after = (!sharp[next]).then(|| samples[(i + 2) % n].at);
+        let way = Between::new(before, [a.at, b.at], after);
+        dense.extend((1..pieces).map(|k| {
+            let share = k as f64 / pieces as f64;
             let smoothing = a.smoothing + (b.smoothing - a.smoothing) * share;
-            Sample { at: a.at.lerp(b.at, share), weight, smoothing, sparse: a.sparse }
+            Sample { at: way.at(share), weight, smoothing, sparse: a.sparse }
         }));
     }
     dense
+}
+
+/// Whether a line bends at a sample so that it does not go on smoothly.
+fn bends(samples: &[Sample], i: usize) -> bool {
+    let n = samples.len();
+    let [a, b, c] = [(i + n - 1) % n, i, (i + 1) % n].map(|k| samples[k]);
+    a.sparse || b.sparse || c.sparse || (b.at - a.at).angle_to(c.at - b.at).abs() > MOST_TURN
 }
 
 /// Length along a closed line up to each sample, and all around.
@@ -151,7 +174,9 @@ fn split(line: &Closed, found: &[usize]) -> Sides {
     if found.is_empty() {
         runs.push(dense.to_vec());
     }
-    Sides { runs, corners: found.iter().map(|&i| dense[i]).collect(), extent, noise, sparse }
+    let steady = line.noise < STEADY * extent;
+    let exact = found.iter().map(|i| steady && line.known.binary_search(i).is_ok()).collect();
+    Sides { runs, corners: found.iter().map(|&i| dense[i]).collect(), exact, extent, noise, sparse }
 }
 
 /// The run without what was put between its corners' samples and its first and last drawn ones: if the corner lies
@@ -232,7 +257,10 @@ fn joined(sides: &Sides, smooth: &[Vec<DVec2>]) -> Contour {
     let count = smooth.len();
     let reach = (0.015 * sides.extent).max(4. * sides.noise);
     let tips: Vec<DVec2> = (0..count)
-        .map(|k| tip(&smooth[(k + count - 1) % count], &smooth[k], sides.corners[k].at, reach, sides))
+        .map(|k| match sides.corners[k].at {
+            at if sides.exact[k] => at,
+            at => tip(&smooth[(k + count - 1) % count], &smooth[k], at, reach, sides),
+        })
         .collect();
     let mut contour = Contour::default();
     for (k, side) in smooth.iter().enumerate() {

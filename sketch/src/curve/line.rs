@@ -20,6 +20,12 @@ const SPARSE: f64 = 0.03;
 /// Of such a stroke hardly a sample lies on the straight way between its neighbours, to this share of that way; one
 /// drawn fast along straight sides has many.
 const ON_THE_WAY: f64 = 0.01;
+/// Nor are most of its steps within this share of their median, while most of its samples turn by less than this, in
+/// radians: the corners of an octagon are even, but turn further.
+const EVEN: f64 = 0.2;
+const GENTLE: f64 = 0.45;
+/// Of fewer steps than twice this, all may be even by chance.
+const FEWEST_EVEN: usize = 6;
 
 /// The times of the cubic come from the noisy samples too, which hides this part of the noise (measured).
 const TIMES_FROM_NOISE: f64 = 1.4;
@@ -113,18 +119,33 @@ fn distinct_samples(drawn: &DrawnStroke, frame: &Frame) -> Vec<Sample> {
         samples.push(Sample { at, weight: 1., smoothing, sparse: false });
     }
     let step = length(&samples) / samples.len() as f64;
-    let sparse = step > SPARSE && 4 * on_the_way(&samples) < samples.len();
+    let sparse = step > SPARSE && 4 * on_the_way(&samples) < samples.len() && !goes_evenly(&samples);
     samples.iter_mut().for_each(|sample| sample.sparse = sparse);
     samples
 }
 
 /// How many samples lie on the straight way between their neighbours.
-fn on_the_way(samples: &[Sample]) -> usize {
+pub(super) fn on_the_way(samples: &[Sample]) -> usize {
     let straight = |three: &&[Sample]| {
         let (way, aside) = (three[2].at - three[0].at, three[1].at - three[0].at);
         way.perp_dot(aside).abs() <= ON_THE_WAY * way.length_squared() && way.dot(aside) > 0.
     };
     samples.windows(3).filter(straight).count()
+}
+
+/// Whether samples follow each other at even steps around gentle bends, as a pen leaves them and no thinning out does.
+fn goes_evenly(samples: &[Sample]) -> bool {
+    let mut steps: Vec<f64> = samples.windows(2).map(|two| two[0].at.distance(two[1].at)).collect();
+    let middle = steps.len() / 2;
+    if middle < FEWEST_EVEN {
+        return false;
+    }
+    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    let median = *median;
+    let even = steps.iter().filter(|step| (*step / median - 1.).abs() < EVEN).count();
+    let turn = |three: &[Sample]| (three[1].at - three[0].at).angle_to(three[2].at - three[1].at).abs();
+    let gentle = samples.windows(3).filter(|three| turn(three) < GENTLE).count();
+    3 * even > 2 * steps.len() && 3 * gentle > 2 * (samples.len() - 2)
 }
 
 /// Whether most of the drawn samples are of strokes that were thinned out.

@@ -20,6 +20,7 @@ mod polygon;
 mod raster;
 mod silhouette;
 mod variational;
+mod way;
 
 use blobtree::{Drawing, Holes};
 use corners::Wishes;
