@@ -20,7 +20,7 @@ const LARGEST_FILLET: f64 = 0.025;
 /// What lengths along the line may be off, in shares: evenly spaced samples lie just on the ends of a reach.
 const ROUNDING: f64 = 1e-6;
 /// A place asked to be sharp or round concerns corners this near, in extents.
-const NEAR: f64 = 0.05;
+pub(super) const NEAR: f64 = 0.05;
 
 /// Where only the places are kept at which a line bends, it goes straight between them to this, in drawing sizes:
 /// programs that thin lines out leave 2 of 255 pixels. An arc through a corner would leave its edges further.

@@ -4,6 +4,7 @@ use super::Contour;
 use super::banded;
 use super::corners::{self, Closed, STEADY, Wishes, meeting};
 use super::cut_corners::restored;
+use super::folds;
 use super::line::{Sample, are_sparse, noise, noise_between};
 use super::polygon;
 use super::way::Between;
@@ -32,15 +33,15 @@ const THINNED_OUT: f64 = 0.002;
 const LENGTH_OF_A_GESTURE: f64 = 0.02;
 
 /// A closed line with corners, ready to be smoothed.
-struct Sides {
+pub(super) struct Sides {
     /// Samples from one corner to the next, without the corners; one closed run where there is no corner.
-    runs: Vec<Vec<Sample>>,
+    pub runs: Vec<Vec<Sample>>,
     /// The corner's sample before each run.
     corners: Vec<Sample>,
     /// Whether that is just where the corner is.
     exact: Vec<bool>,
-    extent: f64,
-    noise: f64,
+    pub extent: f64,
+    pub noise: f64,
     /// Whether only places were kept at which the line bends: tips among them.
     sparse: bool,
 }
@@ -62,8 +63,12 @@ pub(super) fn fair(samples: &[Sample], wishes: &Wishes) -> Option<Contour> {
     let lengths = lengths(&dense);
     let known = restored.places_in(&dense);
     let line = Closed { samples: &dense, lengths: &lengths, extent, noise, sparse, known: &known };
-    let found = corners::find(&line, wishes);
-    let sides = split(&line, &found);
+    let mut found = corners::find(&line, wishes);
+    let mut sides = split(&line, &found);
+    if let Some(more) = folds::more(&line, &sides, &found, wishes) {
+        found = more;
+        sides = split(&line, &found);
+    }
     let smooth = least_expected_error(&sides);
     let mut contour = if sides.corners.is_empty() {
         Contour { points: thinned(&smooth[0], SHORTEST_STEP * extent), corners: Vec::new() }
@@ -193,16 +198,28 @@ fn without_cut_tips(run: Vec<Sample>, reach: f64) -> Vec<Sample> {
     run[from..=to].to_vec()
 }
 
-/// Each run by itself: a straight side bears far more smoothing than a bent one.
-fn least_expected_error(sides: &Sides) -> Vec<Vec<DVec2>> {
-    let around: f64 = sides.runs.iter().map(|run| super::line::length(run)).sum();
-    let weight: f64 = sides.runs.iter().flatten().map(|sample| sample.weight).sum();
-    let density = weight / around.max(1e-9);
-    sides.runs.iter().map(|run| least_expected_error_of(run, density, sides)).collect()
+impl Sides {
+    /// What samples count together on a way of length 1.
+    pub fn density(&self) -> f64 {
+        let around: f64 = self.runs.iter().map(|run| super::line::length(run)).sum();
+        let weight: f64 = self.runs.iter().flatten().map(|sample| sample.weight).sum();
+        weight / around.max(1e-9)
+    }
 }
 
-fn least_expected_error_of(run: &[Sample], density: f64, sides: &Sides) -> Vec<DVec2> {
-    let closed = sides.corners.is_empty();
+/// Each run by itself: a straight side bears far more smoothing than a bent one.
+fn least_expected_error(sides: &Sides) -> Vec<Vec<DVec2>> {
+    let (density, closed) = (sides.density(), sides.corners.is_empty());
+    sides.runs.iter().map(|run| least_expected_error_of(run, closed, density, sides).0).collect()
+}
+
+/// A run smoothed with the least expected error, and that.
+pub(super) fn least_expected_error_of(
+    run: &[Sample],
+    closed: bool,
+    density: f64,
+    sides: &Sides,
+) -> (Vec<DVec2>, f64) {
     let around = super::line::length(run);
     let mut best: Option<(f64, Vec<DVec2>)> = None;
     for length in LENGTHS.map(|length| length * sides.extent) {
@@ -216,7 +233,7 @@ fn least_expected_error_of(run: &[Sample], density: f64, sides: &Sides) -> Vec<D
             _ => best = Some((error, smooth)),
         }
     }
-    best.map(|(_, smooth)| smooth).unwrap_or_default()
+    best.map(|(error, smooth)| (smooth, error)).unwrap_or_default()
 }
 
 fn smoothed(run: &[Sample], length: f64, density: f64, extent: f64, closed: bool) -> Vec<DVec2> {

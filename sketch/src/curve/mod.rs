@@ -11,6 +11,7 @@ mod closing;
 mod corners;
 mod cut_corners;
 mod fair;
+mod folds;
 mod groups;
 mod holders;
 mod line;
