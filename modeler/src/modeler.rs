@@ -27,7 +27,7 @@ use crate::pointing::Pointing;
 use crate::portraits::Portraits;
 use crate::settings::{Settings, Theme};
 use crate::solid::{Asking, Solid, SolidMaker};
-use crate::stage::Stage;
+use crate::stage::{Line, Stage};
 use crate::trace::{Trace, Wait};
 use crate::variants::Vary;
 use crate::view::{self, ViewState};
@@ -242,6 +242,14 @@ impl Modeler {
     /// The knobs in the view: what they say, and where they are, in points of the view.
     pub fn knobs(&self) -> Vec<(String, glam::Vec2)> {
         view::knobs(self)
+    }
+
+    /// The seams of the solid as it is drawn, as far as they are known and wanted.
+    pub fn seams(&self) -> &[Line] {
+        match &self.solid {
+            Some(solid) if self.settings.shows_seams => self.solids.seams(solid),
+            _ => &[],
+        }
     }
 
     /// The part that the pointer is over in the view.

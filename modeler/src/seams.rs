@@ -4,6 +4,7 @@ use crate::several;
 use crate::stage::Line;
 use blobtree::{NodePath, NodeRef, Operator, OwnerFinder, Owners, Shape};
 use glam::Vec3;
+use polygonizer::Cancel;
 use rayon::prelude::*;
 
 /// Places that are looked at together.
@@ -42,14 +43,17 @@ pub struct Ground<'a> {
     pub cell: f32,
 }
 
-/// The seams on a surface of this tree.
+/// The seams on a surface of this tree; `None` if it was cancelled.
 ///
 /// **Cost:** the owners of all corners, and six more for each edge that a seam crosses.
-pub fn seams(root: &NodeRef, owners: &Owners, ground: Ground) -> Vec<Line> {
+pub fn seams(root: &NodeRef, owners: &Owners, ground: Ground, cancel: &Cancel) -> Option<Vec<Line>> {
     if owners.parts().len() < 2 {
-        return Vec::new();
+        return Some(Vec::new());
     }
-    let of = owned(owners, ground.positions);
+    let of = owned(owners, ground.positions, cancel);
+    if cancel.is_cancelled() {
+        return None;
+    }
     let is_crossed = |[a, b, c]: &&[u32; 3]| {
         let [a, b, c] = [*a, *b, *c].map(|corner| of[corner as usize]);
         a != b || b != c
@@ -62,7 +66,7 @@ pub fn seams(root: &NodeRef, owners: &Owners, ground: Ground) -> Vec<Line> {
         .collect();
     edges.sort_unstable();
     edges.dedup();
-    let crossings = crossings(owners, &of, &edges, ground);
+    let crossings = crossings(owners, &of, &edges, ground, cancel);
     let mut lines = Vec::with_capacity(crossed.len());
     for triangle in crossed {
         let found: Vec<(Vec3, [u32; 2])> = sides(triangle)
@@ -85,7 +89,8 @@ pub fn seams(root: &NodeRef, owners: &Owners, ground: Ground) -> Vec<Line> {
         });
         Line { ends: [from, to], color: [r, g, b, 255], width: WIDTH }
     };
-    lines.into_iter().map(line).collect()
+    let lines = lines.into_iter().map(line).collect();
+    (!cancel.is_cancelled()).then_some(lines)
 }
 
 /// The sides of a triangle, each with its lower corner first.
@@ -93,14 +98,16 @@ fn sides(&[a, b, c]: &[u32; 3]) -> impl Iterator<Item = [u32; 2]> {
     [[a, b], [b, c], [c, a]].into_iter().map(|[a, b]| [a.min(b), a.max(b)])
 }
 
-/// The owners of places.
-fn owned(owners: &Owners, places: &[Vec3]) -> Vec<u32> {
-    let find = |finder: &mut OwnerFinder, places: &[Vec3]| finder.owners(places);
+/// The owners of places; of no use if it was cancelled.
+fn owned(owners: &Owners, places: &[Vec3], cancel: &Cancel) -> Vec<u32> {
+    let find = |finder: &mut OwnerFinder, places: &[Vec3]| {
+        if cancel.is_cancelled() { vec![0; places.len()] } else { finder.owners(places) }
+    };
     places.par_chunks(TOGETHER).map_init(|| owners.finder(), find).flatten_iter().collect()
 }
 
 /// Where each edge changes its owner, a little above the surface.
-fn crossings(owners: &Owners, of: &[u32], edges: &[[u32; 2]], ground: Ground) -> Vec<Vec3> {
+fn crossings(owners: &Owners, of: &[u32], edges: &[[u32; 2]], ground: Ground, cancel: &Cancel) -> Vec<Vec3> {
     let at = |corner: u32| {
         let corner = corner as usize;
         ground.positions[corner] + ground.normals[corner] * (ABOVE * ground.cell)
@@ -115,7 +122,7 @@ fn crossings(owners: &Owners, of: &[u32], edges: &[[u32; 2]], ground: Ground) ->
                 ground.positions[*a as usize].lerp(ground.positions[*b as usize], 0.5 * (from + to))
             })
             .collect();
-        for ((way, owner), [a, _]) in ways.iter_mut().zip(owned(owners, &middles)).zip(edges) {
+        for ((way, owner), [a, _]) in ways.iter_mut().zip(owned(owners, &middles, cancel)).zip(edges) {
             let middle = 0.5 * (way[0] + way[1]);
             if owner == of[*a as usize] { way[0] = middle } else { way[1] = middle }
         }
@@ -149,7 +156,7 @@ mod tests {
         let mesh = surface.mesh();
         let (positions, normals, triangles) = (&mesh.positions, &surface.normals(), &mesh.triangles);
         let ground = Ground { positions, normals, triangles, cell: cell.mm() };
-        seams(root, &Owners::new(root, &BakeStore::new()), ground)
+        seams(root, &Owners::new(root, &BakeStore::new()), ground, &Cancel::new()).expect("not cancelled")
     }
 
     #[test]

@@ -57,8 +57,6 @@ pub struct Solid {
     pub version: u64,
     /// Three for each triangle, counter-clockwise seen from outside.
     pub corners: Vec<Corner>,
-    /// Where one part ends and another begins, if that was asked for.
-    pub seams: Vec<Line>,
     /// Around it, mm; empty without any.
     pub bounds: Aabb,
     /// The size of its cells, mm.
@@ -75,6 +73,21 @@ pub struct Solid {
     pub took: Duration,
 }
 
+/// Where one part of a solid ends and another begins.
+#[derive(Debug)]
+struct Seams {
+    version: u64,
+    is_fine: bool,
+    lines: Vec<Line>,
+}
+
+/// What comes of a question: a solid first, then its seams, for which nobody waits.
+#[derive(Debug)]
+enum Made {
+    Solid(Solid),
+    Seams(Seams),
+}
+
 /// A tree to be drawn.
 #[derive(Clone, Debug)]
 struct Question {
@@ -88,8 +101,11 @@ struct Question {
 /// Makes solids of trees.
 #[derive(Debug)]
 pub struct SolidMaker {
-    worker: Newest<Question, Solid>,
+    worker: Newest<Question, Made>,
     asked: u64,
+    /// Whether what was asked last is to have seams.
+    has_seams: bool,
+    seams: Option<Seams>,
     /// Solids before this one are of a document that is gone.
     first: u64,
 }
@@ -109,12 +125,13 @@ impl SolidMaker {
         let worker = Newest::start("solid", wake, move |question: Question, answering| {
             maker.make(&question, answering);
         })?;
-        Ok(Self { worker, asked: 0, first: 0 })
+        Ok(Self { worker, asked: 0, has_seams: false, seams: None, first: 0 })
     }
 
     /// Asks for the solid of a tree, with its seams or without, in a frame that began `now`; returns its version.
     pub fn ask(&mut self, root: &NodeRef, has_seams: bool, asking: Asking, now: Instant) -> u64 {
         self.asked += 1;
+        self.has_seams = has_seams;
         let root = root.clone();
         self.worker.ask(Question { version: self.asked, root, has_seams, asking, asked: now });
         self.asked
@@ -122,7 +139,19 @@ impl SolidMaker {
 
     /// The newest solid since the last look.
     pub fn ready(&mut self) -> Option<Solid> {
-        self.worker.answers().last().filter(|solid| solid.version >= self.first)
+        let mut newest = None;
+        for made in self.worker.answers() {
+            match made {
+                Made::Solid(solid) => newest = Some(solid),
+                Made::Seams(seams) => self.seams = Some(seams),
+            }
+        }
+        newest.filter(|solid| solid.version >= self.first)
+    }
+
+    /// The seams of a solid, as far as they are known.
+    pub fn seams(&self, solid: &Solid) -> &[Line] {
+        self.seams.as_ref().filter(|seams| seams.version == solid.version).map_or(&[], |seams| &seams.lines)
     }
 
     /// Nothing that was asked for so far is wanted any more.
@@ -132,7 +161,9 @@ impl SolidMaker {
 
     /// Whether everything asked for so far is there in `shown` as fine as it gets.
     pub fn is_done(&self, shown: Option<&Solid>) -> bool {
-        shown.is_some_and(|solid| solid.version == self.asked && solid.is_fine)
+        let is_newest = |seams: &Seams| seams.version == self.asked && seams.is_fine;
+        let has_seams = !self.has_seams || self.seams.as_ref().is_some_and(is_newest);
+        has_seams && shown.is_some_and(|solid| solid.version == self.asked && solid.is_fine)
     }
 }
 
@@ -153,10 +184,10 @@ struct Maker {
 
 impl Maker {
     /// Makes one level after the other.
-    fn make(&mut self, question: &Question, answering: &Answering<Solid>) {
+    fn make(&mut self, question: &Question, answering: &Answering<Made>) {
         let mut began = Instant::now();
         let tree = Tree::new(&question.root);
-        let paint = Paint::new(&question.root, question.has_seams, &BakeStore::new());
+        let palette = Palette::new(&question.root, &BakeStore::new());
         if self.extent.is_empty() {
             self.extent = tree.support();
         }
@@ -164,10 +195,11 @@ impl Maker {
         let Some(surface) = coarse.follow(&question.root, &tree, self.extent, &answering.closed) else {
             return;
         };
-        let drawn = draw(surface, &paint, question, false);
+        let drawn = draw(surface, &palette, question, false);
         self.extent = drawn.bounds;
         let unconstrained = tree.unconstrained();
-        answering.give_late(Solid { unconstrained, took: began.elapsed(), ..drawn });
+        answering.give_late(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }));
+        sew(surface, &BakeStore::new(), question, false, answering);
         if !rests(&answering.cancel) {
             return;
         }
@@ -178,20 +210,23 @@ impl Maker {
             // A change below such a node may change all of it, so its surface is made anew.
             fine.surface = None;
             let tree = self.bakes.compile(&question.root);
-            let paint = Paint::new(&question.root, question.has_seams, &self.bakes);
+            let palette = Palette::new(&question.root, &self.bakes);
             let Some(cell) = fine.cell(self.extent) else { return };
             let options = Options { cancel: Some(&answering.cancel), ..Options::default() };
             let Ok(surface) = Surface::build(&tree, cell, &options) else { return };
-            let drawn = draw(&surface, &paint, question, true);
-            answering.give(Solid { unconstrained: tree.unconstrained(), took: began.elapsed(), ..drawn });
+            let drawn = draw(&surface, &palette, question, true);
+            let unconstrained = tree.unconstrained();
+            answering.give(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }));
+            sew(&surface, &self.bakes, question, true, answering);
             return;
         }
         let Some(surface) = fine.follow(&question.root, &tree, self.extent, &answering.cancel) else {
             return;
         };
-        let drawn = draw(surface, &paint, question, true);
+        let drawn = draw(surface, &palette, question, true);
         self.extent = drawn.bounds;
-        answering.give(Solid { unconstrained, took: began.elapsed(), ..drawn });
+        answering.give(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }));
+        sew(surface, &BakeStore::new(), question, true, answering);
     }
 }
 
@@ -239,34 +274,38 @@ impl Level {
     }
 }
 
-/// What is drawn on a surface.
-struct Paint {
-    palette: Palette,
-    owners: Option<Owners>,
-}
-
-impl Paint {
-    fn new(root: &NodeRef, has_seams: bool, bakes: &BakeStore) -> Self {
-        let owners = has_seams.then(|| Owners::new(root, bakes));
-        Self { palette: Palette::new(root, bakes), owners }
+/// Makes the seams, if they are wanted, for as long as nothing newer is asked.
+fn sew(
+    surface: &Surface,
+    bakes: &BakeStore,
+    question: &Question,
+    is_fine: bool,
+    answering: &Answering<Made>,
+) {
+    if !question.has_seams || answering.cancel.is_cancelled() {
+        return;
     }
-}
-
-fn draw(surface: &Surface, paint: &Paint, question: &Question, is_fine: bool) -> Solid {
-    let (mesh, normals, kinds) = (surface.mesh(), surface.normals(), surface.kinds());
-    let colors: Vec<[u8; 3]> = mesh
-        .positions
-        .par_chunks(TOGETHER)
-        .map_init(|| paint.palette.painter(), |painter, points| painter.colors(points))
-        .flatten_iter()
-        .collect();
+    let (mesh, normals) = (surface.mesh(), surface.normals());
     let ground = Ground {
         positions: &mesh.positions,
         normals: &normals,
         triangles: &mesh.triangles,
         cell: surface.cell().mm(),
     };
-    let seams = paint.owners.as_ref().map(|owners| seams(&question.root, owners, ground));
+    let owners = Owners::new(&question.root, bakes);
+    if let Some(lines) = seams(&question.root, &owners, ground, &answering.cancel) {
+        answering.give(Made::Seams(Seams { version: question.version, is_fine, lines }));
+    }
+}
+
+fn draw(surface: &Surface, palette: &Palette, question: &Question, is_fine: bool) -> Solid {
+    let (mesh, normals, kinds) = (surface.mesh(), surface.normals(), surface.kinds());
+    let colors: Vec<[u8; 3]> = mesh
+        .positions
+        .par_chunks(TOGETHER)
+        .map_init(|| palette.painter(), |painter, points| painter.colors(points))
+        .flatten_iter()
+        .collect();
     let level = u8::from(is_fine);
     let corners = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
@@ -286,7 +325,6 @@ fn draw(surface: &Surface, paint: &Paint, question: &Question, is_fine: bool) ->
     Solid {
         version: question.version,
         corners: mesh.triangles.par_iter().flat_map_iter(corners).collect(),
-        seams: seams.unwrap_or_default(),
         bounds: Aabb::of_points(mesh.positions.iter().copied()),
         cell: surface.cell().mm(),
         is_fine,

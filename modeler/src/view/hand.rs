@@ -182,7 +182,7 @@ fn pen(modeler: &mut Modeler, ui: &Ui, response: &Response) {
                 modeler.view.hold = Hold::Pen;
             }
             Event::PointerMoved(to) => {
-                modeler.pad.go_on(sample(modeler, in_view(*to, response), response, ui))
+                modeler.pad.go_on(sample(modeler, in_view(*to, response), response, ui));
             }
             Event::PointerButton { button: PointerButton::Primary, pressed: false, pos, .. } => {
                 let at = in_view(*pos, response);

@@ -95,9 +95,7 @@ fn picture(modeler: &Modeler, ui: &Ui, rect: Rect, stage: &mut dyn Stage) {
     let background = theme::background(dark);
     let scale = ui.ctx().pixels_per_point();
     let mut lines = ground::lines(&modeler.settings, dark);
-    if let (true, Some(solid)) = (modeler.settings.shows_seams, modeler.solid()) {
-        lines.extend_from_slice(&solid.seams);
-    }
+    lines.extend_from_slice(modeler.seams());
     let picture = Picture {
         view: modeler.camera.view(modeler.view.screen),
         pixels: [rect.width(), rect.height()].map(|points| ((points * scale).round() as u32).clamp(1, 8192)),
