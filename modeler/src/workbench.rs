@@ -25,8 +25,8 @@ pub struct Workbench {
     saved: Option<Snapshot>,
     /// The selected nodes, sorted; always ones that are there, and none below another one.
     selection: Vec<NodePath>,
-    /// What is shown instead of the document while something is dragged.
-    preview: Option<Scene>,
+    /// What is shown instead of the document while something is dragged, and the command that makes it.
+    preview: Option<(Command, Scene)>,
 }
 
 /// What is in a file, by the addresses of the roots of all variants.
@@ -133,7 +133,7 @@ impl Workbench {
 
     /// The scene as it is to be shown: with what is being dragged.
     pub fn shown(&self) -> &Scene {
-        self.preview.as_ref().unwrap_or(self.variants.document().scene())
+        self.preview.as_ref().map_or(self.scene(), |(_, scene)| scene)
     }
 
     /// Whether something is being dragged.
@@ -267,8 +267,14 @@ impl Workbench {
     ///
     /// Errors: a command that cannot be carried out; then the document is shown.
     pub fn drag(&mut self, command: Option<Command>) -> Result<(), CommandError> {
+        // A hand that holds still changes nothing, so that what is shown may become fine.
+        if matches!((&self.preview, &command), (Some((known, _)), Some(command)) if known == command) {
+            return Ok(());
+        }
         self.preview = None;
-        self.preview = command.map(|command| self.variants.document().preview(command)).transpose()?;
+        let document = self.variants.document();
+        let shown = command.map(|command| Ok((command.clone(), document.preview(command)?)));
+        self.preview = shown.transpose()?;
         Ok(())
     }
 

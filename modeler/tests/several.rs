@@ -214,6 +214,8 @@ fn what_is_dragged_near_the_bed_or_the_mirror_plane_rests_there_unless_it_is_let
     screen.hover_at(from + by);
     screen.run_steps(2);
     assert_eq!(screen.state().rests_on(), ["on the mirror plane, x = 0", "on the bed, z = 0"]);
+    // And while the hand holds still, the model becomes fine.
+    settle(&mut screen);
     screen.drop_at(from + by);
     settle(&mut screen);
     assert!(screen.state().rests_on().is_empty());

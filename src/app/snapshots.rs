@@ -6,11 +6,14 @@
 use super::desk::Files;
 use super::stage::Card;
 use blobtree::NodePath;
+use blobtree::build::{point, union};
 use eframe::egui::{self, Pos2, TexturesDelta, Theme, vec2};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, TestRenderer};
 use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup};
+use glam::{Vec2, Vec3};
 use modeler::Modeler;
+use modeler::camera::Side;
 use modeler::dialog::Dialog;
 use modeler::settings::Tool;
 use modeler::stage::Look;
@@ -217,8 +220,29 @@ fn open(screen: &mut Screen, example: usize) {
     settle(screen);
 }
 
+/// Drags a ball to where it rests on the bed and on the mirror plane, and holds it there.
+fn drag_to_rest(screen: &mut Screen) {
+    let balls = union([point([22., 0., 18.], 10.), point([-14., 0., 8.], 8.)]);
+    let (modeler, _) = screen.state_mut();
+    modeler.put(blobtree::Scene::new(balls), None);
+    modeler.look_from(Side::Front);
+    settle(screen);
+    screen.state_mut().0.select(Some(NodePath(vec![0])));
+    settle(screen);
+    let rect = screen.get_by_label("Model view").rect();
+    let view = screen.state().0.camera.view(Vec2::new(rect.width(), rect.height()));
+    let place = |x: f32, z: f32| {
+        let at = view.screen_from_model(Vec3::new(x, 0.0, z)).expect("before the eye");
+        rect.min + vec2(at.x, at.y)
+    };
+    screen.hover_at(place(22.0, 18.0));
+    screen.drag_at(place(22.0, 18.0));
+    screen.hover_at(place(0.5, 10.4));
+    settle(screen);
+}
+
 /// What is on a screen: its name, and how to get there from the empty page.
-const SCREENS: [(&str, Prepare); 7] = [
+const SCREENS: [(&str, Prepare); 8] = [
     ("empty", |_| ()),
     ("sketch", draw_circle),
     ("parts", |screen| {
@@ -234,6 +258,7 @@ const SCREENS: [(&str, Prepare); 7] = [
         screen.state_mut().0.select(Some(NodePath(vec![1])));
         settle(screen);
     }),
+    ("dragged", drag_to_rest),
     ("left-handed", |screen| {
         screen.state_mut().0.settings.left_handed = true;
         settle(screen);
