@@ -7,7 +7,7 @@ use crate::desk::Bake;
 use crate::newest::{Answering, Newest};
 use crate::seams::{Ground, seams};
 use crate::stage::Line;
-use blobtree::{Aabb, BakeStore, ChangedPlaces, Field, NodeRef, Owners, Palette, Tree};
+use blobtree::{Aabb, BakeStore, ChangedPlaces, Field, NodeRef, Owners, Palette, Tree, solid_box};
 use glam::Vec3;
 use polygonizer::{Cancel, CellSize, Options, Surface, VertexKind};
 use rayon::prelude::*;
@@ -119,6 +119,7 @@ impl SolidMaker {
         let mut maker = Maker {
             levels: CELLS.map(|cells| Level { cells, surface: None }),
             extent: Aabb::EMPTY,
+            reach: 0.0,
             bakes: BakeStore::new(),
             bake,
         };
@@ -178,6 +179,8 @@ struct Maker {
     levels: [Level; 2],
     /// Around the last solid, by which cells are chosen.
     extent: Aabb,
+    /// How far the influence of what was last drawn reached, along its longest side, mm.
+    reach: f32,
     bakes: BakeStore,
     bake: Option<Bake>,
 }
@@ -188,9 +191,7 @@ impl Maker {
         let mut began = Instant::now();
         let tree = Tree::new(&question.root);
         let palette = Palette::new(&question.root, &BakeStore::new());
-        if self.extent.is_empty() {
-            self.extent = tree.support();
-        }
+        self.choose_extent(&tree);
         let [coarse, fine] = &mut self.levels;
         let Some(surface) = coarse.follow(&question.root, &tree, self.extent, &answering.closed) else {
             return;
@@ -227,6 +228,20 @@ impl Maker {
         self.extent = drawn.bounds;
         answering.give(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }));
         sew(surface, &BakeStore::new(), question, true, answering);
+    }
+}
+
+impl Maker {
+    /// Measures the solid anew if its size may be quite another one than that of the last: cells chosen for a ball of
+    /// 5 mm would make millions of triangles of one of 50 mm.
+    fn choose_extent(&mut self, tree: &Tree) {
+        let reach = tree.support().size().max_element();
+        let is_alike = (1.0 / SLACK..=SLACK).contains(&(reach / self.reach));
+        if self.extent.is_empty() || !is_alike {
+            let solid = solid_box(tree);
+            self.extent = if solid.is_empty() { tree.support() } else { solid };
+        }
+        self.reach = reach;
     }
 }
 
@@ -386,6 +401,19 @@ mod tests {
                 break;
             }
             std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn a_solid_that_grows_at_once_to_a_hundred_times_its_size_has_no_more_triangles() {
+        let ball = |radius: f32| -> NodeRef { union([point([0., 0., radius], radius)]).into() };
+        let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
+        let version = maker.ask(&ball(5.0), Asking::Other, Instant::now());
+        let small = fine(&mut maker, version).corners.len();
+        for radius in [500.0, 2.0] {
+            let version = maker.ask(&ball(radius), Asking::Other, Instant::now());
+            let ratio = fine(&mut maker, version).corners.len() as f32 / small as f32;
+            assert!((0.4..2.5).contains(&ratio), "{ratio} times as many for {radius} mm");
         }
     }
 
