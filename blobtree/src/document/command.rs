@@ -236,7 +236,11 @@ impl Command {
         match self {
             Self::Insert { node, .. } => format!("Add {}", called(node)),
             Self::Remove { path } => format!("Remove {}", at(path)),
-            Self::Replace { path, node } => format!("Replace {} by {}", at(path), called(node)),
+            Self::Replace { path, node } => {
+                let old = path.find(root);
+                let joined = old.and_then(|old| joining(old, node));
+                joined.unwrap_or_else(|| format!("Replace {} by {}", at(path), called(node)))
+            }
             Self::Move { from, .. } => format!("Move {} in the tree", at(from)),
             Self::WrapInOperator { path, operator } => {
                 format!("Put {} into {}", at(path), operator.type_name())
@@ -269,6 +273,18 @@ impl Command {
             Self::SetTitle { .. } => "Change title".into(),
         }
     }
+}
+
+/// What an operator is called that takes a node's place with the node as its first child and one more.
+fn joining(old: &NodeRef, node: &NodeRef) -> Option<String> {
+    let Shape::Operator(operator, children) = &node.shape else { return None };
+    let [first, new] = &children[..] else { return None };
+    NodeRef::ptr_eq(first, old).then(|| match operator {
+        Operator::Union => format!("Add {}", called(new)),
+        Operator::Difference | Operator::BlendDifference(_) => format!("Cut {} out", called(new)),
+        Operator::Intersection | Operator::BlendIntersection(_) => format!("Keep what is in {}", called(new)),
+        Operator::Blend(_) | Operator::GradientBlend | Operator::Sum => format!("Blend with {}", called(new)),
+    })
 }
 
 /// A node's name, else its type.

@@ -16,8 +16,9 @@ pub use save::{DEFAULT_OLDER_VERSIONS, SaveError, write_atomically};
 use std::collections::VecDeque;
 use std::path::Path;
 
-/// Most steps that can be undone; the oldest are forgotten first.
-pub const HISTORY_LIMIT: usize = 10_000;
+/// Most steps that can be undone; the oldest are forgotten first. A drawing that was solved takes about half a MiB, and
+/// each step may keep one.
+pub const HISTORY_LIMIT: usize = 1000;
 
 /// A scene being edited, with its history.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::build::{Build, point, union};
 use crate::node::{Color, Node, NodePath, NodeRef, Shape};
-use crate::operator::Operator;
+use crate::operator::{Operator, Sharpness};
 use crate::primitive::{Point, Primitive};
 use crate::random::RandomTree;
 use crate::scene::Scene;
@@ -281,6 +281,25 @@ fn steps_have_names_for_the_history() {
     assert_eq!(document.redo().map(|change| change.name).as_deref(), Some("Change title"));
     document.apply(Command::SetMuted { path: path("/0"), muted: false }).expect("legal");
     assert!(document.redo().is_none(), "a new command forgets what was undone");
+}
+
+#[test]
+fn a_node_that_joins_another_is_named_by_what_it_does() {
+    for (joined, name) in [
+        (Operator::Union, "Add lid"),
+        (Operator::Difference, "Cut lid out"),
+        (Operator::Blend(Sharpness::DEFAULT), "Blend with lid"),
+    ] {
+        let mut document = document();
+        let lid: NodeRef = point([0., 0., 9.], 2.).named("lid").into();
+        let root = document.scene().root.clone();
+        let both = Node::new(Shape::Operator(joined, vec![root, lid.clone()])).into();
+        document.apply(Command::Replace { path: path("/"), node: both }).expect("legal");
+        document
+            .apply(Command::Replace { path: path("/1"), node: lid.translate([1., 0., 0.]).into() })
+            .expect("legal");
+        assert_eq!(document.undo_names().collect::<Vec<_>>(), ["Replace lid by transform", name]);
+    }
 }
 
 /// Any command on a tree, legal or not.
