@@ -106,7 +106,7 @@ impl Baker for Rebaker<'_> {
     }
 
     /// - **Promises:** only takes away; nothing if no cell size was asked for.
-    /// - **Cost:** up to a dozen meshes of the node, and their slices.
+    /// - **Cost:** a mesh of the node and its slices, and up to eighty times those of the parts that were dented.
     fn finish(
         &self,
         rule: &SupportFree,

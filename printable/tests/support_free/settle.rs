@@ -50,6 +50,9 @@ fn settled_shapes_are_support_free_in_the_eyes_of_the_print_check() {
             let (check, _) = settled(shape.clone(), rule.clone());
             let worst = check.findings.first().map(ToString::to_string);
             assert!(check.is_support_free(), "{name}, {:?}: {worst:?}", rule.mode);
+            // Slicers put supports under any sliver.
+            let hanging = check.unsupported();
+            assert!(hanging < 1e-6, "{name}, {:?}: {hanging} mm² hang", rule.mode);
         }
     }
 }
