@@ -71,6 +71,22 @@ fn corners_are_found_and_only_there_and_obey() {
 }
 
 #[test]
+fn corners_hidden_by_a_shaking_hand_are_found_unless_they_are_wished_round() {
+    let inner = |k: u32| 8.8 * DVec2::from_angle(PI * (0.7 + 0.4 * f64::from(k)));
+    for (name, expected, wished) in [("circle", 0, 0), ("ellipse", 0, 0), ("star", 10, 5)] {
+        let shape = shapes().into_iter().find(|shape| shape.name == name).expect("there is one");
+        for seed in 0..4 {
+            let hand = Hand { samples: 250, noise: 0.005, backward: seed % 2 == 1, seed };
+            let mut drawing = draw(&shape, hand, |p| 40. * p);
+            let corners = |drawing: &Drawing| fit(drawing).expect("it closes").contours[0].corners.len();
+            assert_eq!(corners(&drawing), expected, "{name}, seed {seed}");
+            drawing.rounded.extend((0..5).map(|k| inner(k).as_vec2()));
+            assert_eq!(corners(&drawing), wished, "{name} with places wished round, seed {seed}");
+        }
+    }
+}
+
+#[test]
 fn strokes_are_joined_gaps_closed_and_decorations_left_out() {
     let side = |a: [f64; 2], b: [f64; 2]| vec![DVec2::from(a), DVec2::from(a).midpoint(b.into()), b.into()];
     let house = strokes(&[
