@@ -122,7 +122,7 @@ mod tests {
             let way = Way::through([place(0.), place(1.), place(2.)]).expect("three places");
             assert!((way.curvature - 0.5 * on.signum()).abs() < 1e-9);
             assert!(way.ahead(2. * on.abs()).0.distance(place(3.)) < 1e-9);
-            assert!(way.off(place(-1.)) < 1e-9 && (way.off(DVec2::new(3., 1.)) - 2.).abs() < 1e-9);
+            assert!(way.off(place(-1.)) < 1e-9 && (way.off(DVec2::new(4., 1.)) - 1.).abs() < 1e-9);
             let between = Between::new(Some(place(0.)), [place(1.), place(2.)], Some(place(3.)));
             assert!(between.at(0.3).distance(place(1.3)) < 1e-9);
         }
