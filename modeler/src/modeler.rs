@@ -2,7 +2,9 @@
 
 mod add;
 mod files;
+mod habits;
 mod parts;
+mod variants;
 
 pub(crate) use add::added;
 pub use files::{Fetched, How, Newcomer};
@@ -29,11 +31,10 @@ use crate::settings::{Settings, Theme};
 use crate::solid::{Asking, Solid, SolidMaker};
 use crate::stage::{Line, Stage};
 use crate::trace::{Trace, Wait};
-use crate::variants::Vary;
 use crate::view::{self, ViewState};
 use crate::workbench::{EditError, Workbench};
 use blobtree::{Aabb, Command, JournalEntry, NodePath, NodeRef};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -186,27 +187,6 @@ impl Modeler {
         let computing = !self.is_at_rest();
         if let Some(trace) = &mut self.trace {
             trace.frame(self.now, computing);
-        }
-    }
-
-    /// Keeps settings and files in a folder from now on, and takes up those that are there.
-    pub fn keep_in(&mut self, folder: &Path) {
-        match Kept::open(folder, self.wake.clone()) {
-            Ok((kept, settings)) => (self.kept, self.settings) = (kept, settings),
-            Err(error) => self.notices.warn(format!("Settings cannot be kept: {error}")),
-        }
-    }
-
-    /// Has everything look as the settings say. Keys may have changed the size; a hand that is changing it goes first.
-    fn dress(&mut self, ctx: &egui::Context) {
-        let scale = ctx.zoom_factor();
-        if (scale - self.dressed.1).abs() > 1e-3 {
-            (self.settings.scale, self.dressed.1) = (scale, scale);
-        }
-        let wanted = (self.settings.theme, self.settings.scale);
-        if wanted != self.dressed && !ctx.egui_is_using_pointer() {
-            self.settings.dress(ctx);
-            self.dressed = wanted;
         }
     }
 
@@ -380,24 +360,6 @@ impl Modeler {
                 kept
             }
         }
-    }
-
-    /// Does something to variants, and tells the user if it cannot be done.
-    pub fn vary(&mut self, vary: Vary) {
-        if let Err(error) = self.bench.vary(vary) {
-            self.notices.warn(error.to_string());
-        }
-        self.form = None;
-        self.hovered = None;
-    }
-
-    /// The pictures of trees, as far as they are drawn.
-    pub(crate) fn portraits(
-        &mut self,
-        roots: &[NodeRef],
-        ctx: &egui::Context,
-    ) -> Vec<Option<egui::TextureHandle>> {
-        self.portraits.get(roots, ctx, &self.wake)
     }
 
     /// Carries out a command.

@@ -408,10 +408,10 @@ mod tests {
     fn a_solid_that_grows_at_once_to_a_hundred_times_its_size_has_no_more_triangles() {
         let ball = |radius: f32| -> NodeRef { union([point([0., 0., radius], radius)]).into() };
         let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
-        let version = maker.ask(&ball(5.0), Asking::Other, Instant::now());
+        let version = maker.ask(&ball(5.0), false, Asking::Other, Instant::now());
         let small = fine(&mut maker, version).corners.len();
         for radius in [500.0, 2.0] {
-            let version = maker.ask(&ball(radius), Asking::Other, Instant::now());
+            let version = maker.ask(&ball(radius), false, Asking::Other, Instant::now());
             let ratio = fine(&mut maker, version).corners.len() as f32 / small as f32;
             assert!((0.4..2.5).contains(&ratio), "{ratio} times as many for {radius} mm");
         }
