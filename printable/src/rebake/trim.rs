@@ -21,6 +21,13 @@ const NEAR_SURFACE: f32 = 0.1;
 /// Rows that a thread works on at a time.
 const ROWS: usize = 16;
 
+/// By how much the limit is above what the layer below carries inside the solid, below a place where it is felt first.
+///
+/// The filter of the image takes about as much where no samples are kept below. That bit into necks whose field is
+/// hardly more than ½: with 0.005, cuts beside the middles of layers show ledges of 0.7 mm² below the flat underside of a
+/// blend, with 0.05 of 0.05 mm², as overhangs begin too early then; with 0.01 none.
+const HELD: f32 = 0.01;
+
 /// Layers in which what is well inside a slice counts as well inside the solid. Above a flat bottom the field is hardly
 /// more than ½, and would limit the field of all that stands on it.
 const LIFTED: usize = 24;
@@ -141,7 +148,7 @@ impl Sweep {
     /// Goes over a row in which the limit is felt, or something begins.
     ///
     /// Below a place where it is felt first, the limit is drawn down to what the layer below carries: so the filter
-    /// of the image does not round the beginning of the overhang upwards.
+    /// of the image does not round the beginning of the overhang upwards. What is solid there stays so.
     fn feel(
         &self,
         [y, layer]: [usize; 2],
@@ -151,6 +158,7 @@ impl Sweep {
     ) {
         let between = Between { carried: &self.carried, fields: [&self.fields[0], &self.fields[1]] };
         let (field, carried_below) = (self.fields[1].row(y as isize), self.carried.row(y as isize));
+        let field_below = self.fields[0].row(y as isize);
         let mut removed = 0;
         for (x, field) in field.iter().enumerate() {
             if *field > limit[x] + FELT {
@@ -168,7 +176,8 @@ impl Sweep {
                 continue;
             }
             carried[x] = limit[x].min(*field);
-            below[x] = carried_below[x];
+            let is_whole = carried_below[x] >= ISO && carried_below[x] >= field_below[x];
+            below[x] = carried_below[x] + if is_whole { HELD } else { 0.0 };
             collector.mark(x, y, layer);
             if limit[x] < ISO && *field > ISO - NEAR_SURFACE {
                 self.findings.touched.store(true, Ordering::Relaxed);
