@@ -278,6 +278,23 @@ fn what_is_dropped_on_an_empty_page_takes_it_and_on_a_model_the_user_is_asked() 
 }
 
 #[test]
+fn a_drawing_that_is_dropped_on_a_model_becomes_a_sketch_and_nothing_is_asked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("square.json");
+    let corners = [[0., 0.], [40., 0.], [40., 30.], [0., 30.], [0., 0.]].map(glam::Vec2::from);
+    let drawn = sketch::stroke::write_strokes(&[sketch::stroke::Stroke::through(corners)]);
+    std::fs::write(&file, drawn).expect("there is room");
+    let mut screen = with_ball(screen(None));
+    drop_on(&mut screen, &[&file]);
+    let said: Vec<&str> = screen.state().notices.texts().collect();
+    assert!(screen.state().dialog.is_none() && !screen.state().pad.is_empty(), "{said:?}");
+    assert_eq!(parts(&screen).len(), 1);
+    // It fills the view, so it goes across the ball.
+    let found = screen.state().pad.expectations.as_ref().expect("suggestions");
+    assert!(!found.suggestions.is_empty());
+}
+
+#[test]
 fn a_later_file_takes_the_place_of_one_that_is_still_being_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let one = scene_file(folder.path(), "one.trullo", union([ball(0.0, 4.0)]));
