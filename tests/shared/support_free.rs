@@ -185,7 +185,8 @@ impl Table {
              What `trullo support-free` writes at 45° in layers and cells of 0.25 mm, judged by two programs that share no \
              code with it: a check of exact slices in Python, and PrusaSlicer 2.5, asked for supports wherever 45° \
              are exceeded. How to read it stands in [support-free.md](support-free.md#how-well-it-is-kept). Examples \
-             are as large as they are, drawings {DOODLE_SIZE} mm, models {MODEL_HEIGHT} mm high. Written by\n\n\
+             are as large as they are, drawings {DOODLE_SIZE} mm, models {MODEL_HEIGHT} mm high; drawings are spread \
+             evenly over all 4,300, `TRULLO_DOODLES` of them or {DOODLES}. Written by\n\n\
              ```sh\n\
              TRULLO_PYTHON=… cargo test --features shared --test shared promise -- --ignored --nocapture\n\
              ```\n\n\
