@@ -313,7 +313,7 @@ fn a_part_is_put_on_the_ground_and_mirrored() {
     screen.key_press(Key::G);
     settle(&mut screen);
     let one = screen.state().solid().expect("a solid").bounds;
-    assert!(one.min.z.abs() < 0.3 && one.center().x > 5.0, "{one:?}");
+    assert!(one.min.z.abs() < 0.01 && one.center().x > 5.0, "{one:?}");
     screen.key_press(Key::M);
     settle(&mut screen);
     let both = screen.state().solid().expect("a solid").bounds;

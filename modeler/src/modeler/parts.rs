@@ -1,6 +1,7 @@
 //! What is done to the selected parts: one of them or several, always as one step.
 
 use super::Modeler;
+use crate::node_box;
 use crate::placing::{self, Motion};
 use crate::several;
 use blobtree::{Aabb, Command, NodePath, Operator};
@@ -82,8 +83,11 @@ impl Modeler {
 
     /// Puts what is selected on the ground. Several parts keep their places to each other.
     pub fn ground_selected(&mut self) {
-        if let Some(bounds) = self.selected_box() {
-            self.place(Motion::Move(Vec3::new(0.0, 0.0, -bounds.min.z)), true);
+        let root = &self.bench.scene().root;
+        let selection = self.bench.selection().iter();
+        let lowest = selection.filter_map(|path| node_box::lowest(root, path)).reduce(f32::min);
+        if let Some(lowest) = lowest {
+            self.place(Motion::Move(Vec3::new(0.0, 0.0, -lowest)), true);
         }
     }
 
