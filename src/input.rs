@@ -226,5 +226,5 @@ pub fn imported_mesh(
 /// Errors: a scene that cannot be written, which none that was read is.
 pub fn attachments(path: &Path, scene: &Scene) -> Result<Attachments, Failure> {
     let text = scene.to_text().map_err(|e| Failure::of(path, e))?;
-    Ok(Attachments { title: scene.title.clone(), scene: Some(text.into_bytes()), metadata: Vec::new() })
+    Ok(Attachments { title: scene.title.clone(), scene: Some(text.into_bytes()), ..Attachments::default() })
 }

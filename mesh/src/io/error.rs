@@ -183,6 +183,12 @@ pub enum WriteError {
         /// What is wrong with it, and what would be right.
         problem: &'static str,
     },
+    /// Materials that a 3MF file cannot carry.
+    #[error("the materials of the triangles: {problem}; nothing is written")]
+    Materials {
+        /// What is wrong with them.
+        problem: &'static str,
+    },
 }
 
 /// Text from a file, shortened and made printable for an error message.

@@ -147,6 +147,26 @@ pub struct Attachments {
     /// Further names and values. Names are XML names without a colon; those that 3MF does not define itself
     /// are written in Trullo's namespace. `Title` and `Application` are not among them.
     pub metadata: Vec<(String, String)>,
+    /// What the triangles are made of, if something says so. Written, not read.
+    pub materials: Option<TriangleMaterials>,
+}
+
+/// What each triangle of a mesh is made of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TriangleMaterials {
+    /// The materials, the usual one first.
+    pub materials: Vec<Material>,
+    /// For each triangle, the number of its material.
+    pub of_triangles: Vec<u32>,
+}
+
+/// A material, as other programs show it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Material {
+    /// What it is called.
+    pub name: String,
+    /// Red, green and blue (sRGB).
+    pub color: [u8; 3],
 }
 
 /// A mesh that was read, with what was noticed on the way.

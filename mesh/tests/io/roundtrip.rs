@@ -5,7 +5,9 @@ use std::io::Cursor;
 use crate::support::*;
 use glam::Vec3;
 use mesh::Mesh;
-use mesh::io::{Attachments, Format, ReadLimits, WriteError, read, read_as_written, write};
+use mesh::io::{
+    Attachments, Format, Material, ReadLimits, TriangleMaterials, WriteError, read, read_as_written, write,
+};
 
 /// The corners of each triangle: what an STL file holds. Adding zero makes -0 and 0 the same.
 fn corners(mesh: &Mesh) -> Vec<[[u32; 3]; 3]> {
@@ -75,6 +77,7 @@ fn a_3mf_file_carries_scene_title_and_metadata() {
             ("Designer".to_owned(), "  A 'child'  ".to_owned()),
             ("cell-size_mm.v2".to_owned(), "0.25".to_owned()),
         ],
+        ..Attachments::default()
     };
     let mut file = Cursor::new(Vec::new());
     write(&mut file, &cube(10.0), Format::ThreeMf, &attachments).expect("the mesh is writable");
@@ -89,6 +92,7 @@ fn a_3mf_file_is_what_the_core_specification_asks_for() {
         title: Some("Tip".to_owned()),
         scene: Some(b"{}".to_vec()),
         metadata: vec![("Cells".to_owned(), "64".to_owned())],
+        ..Attachments::default()
     };
     let mesh = Mesh {
         positions: vec![Vec3::ZERO, Vec3::new(0.1, -2.5e-7, 3e10), Vec3::ONE],
@@ -206,5 +210,48 @@ fn metadata_that_xml_cannot_hold_is_refused_by_name() {
         let error = write(&mut file, &cube(1.0), Format::ThreeMf, &attachments).expect_err(name);
         assert!(matches!(error, WriteError::Metadata { name: found, .. } if found == name), "{name}");
         assert!(file.into_inner().is_empty());
+    }
+}
+
+/// The twelve triangles of a cube of these materials.
+fn of_two_materials(of_triangles: Vec<u32>, name: &str) -> Result<Cursor<Vec<u8>>, WriteError> {
+    let material = |name: &str, color| Material { name: name.to_owned(), color };
+    let materials = vec![material("model", [1, 0xE2, 255]), material(name, [0; 3])];
+    let materials = Some(TriangleMaterials { materials, of_triangles });
+    let mut file = Cursor::new(Vec::new());
+    let attachments = Attachments { materials, ..Attachments::default() };
+    write(&mut file, &cube(1.0), Format::ThreeMf, &attachments).map(|()| file)
+}
+
+#[test]
+fn triangles_of_a_3mf_file_say_what_they_are_made_of() {
+    use std::io::Read;
+    let of_triangles = (0..12).map(|n| u32::from(n == 3 || n == 11)).collect();
+    let mut file = of_two_materials(of_triangles, "\"grown\" & <held>").expect("it can be written");
+    let back = read(&mut file, Format::ThreeMf, &ReadLimits::default()).expect("the file is whole");
+    assert_eq!((back.mesh, back.notices), (cube(1.0), Vec::new()));
+    let mut archive = zip::ZipArchive::new(file).expect("it is a zip file");
+    let mut text = String::new();
+    let mut part = archive.by_name("3D/3dmodel.model").expect("the model");
+    part.read_to_string(&mut text).expect("it is text");
+    let resource = "<basematerials id=\"2\">\n   <base name=\"model\" displaycolor=\"#01E2FF\"/>\n   \
+        <base name=\"&quot;grown&quot; &amp; &lt;held&gt;\" displaycolor=\"#000000\"/>\n  </basematerials>\n  \
+        <object id=\"1\" type=\"model\" pid=\"2\" pindex=\"0\">";
+    assert!(text.contains(resource), "{text}");
+    let triangles: Vec<&str> = text.lines().filter(|line| line.starts_with("<triangle ")).collect();
+    let marked = (0..12).filter(|n| triangles[*n].ends_with(" pid=\"2\" p1=\"1\"/>"));
+    assert_eq!((triangles.len(), marked.collect::<Vec<_>>()), (12, vec![3, 11]), "{text}");
+}
+
+#[test]
+fn materials_that_do_not_fit_the_mesh_are_refused() {
+    for (of_triangles, name, words) in [
+        (vec![0; 11], "grown", "each triangle needs one"),
+        (vec![2; 12], "grown", "one that is not there"),
+        (vec![1; 12], "", "each needs a name"),
+        (vec![1; 12], "\u{7}", "without control characters"),
+    ] {
+        let error = of_two_materials(of_triangles, name).expect_err(words).to_string();
+        assert!(error.contains(words), "{error}");
     }
 }

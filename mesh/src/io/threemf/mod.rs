@@ -1,7 +1,8 @@
 //! 3MF core packages, with the production extension's split models.
 //!
 //! Reading places every build item, with its transform and unit, into one mesh; writing makes one object in
-//! millimetres. Materials, textures and slices are not read; extensions that change the shape are refused by name.
+//! millimetres, with base materials if triangles have some. Materials, textures and slices are not read; extensions
+//! that change the shape are refused by name.
 //!
 //! **Source:** 3MF Core Specification 1.4, 3MF Production Extension 1.2.
 
@@ -103,5 +104,5 @@ fn attachments_of(root: &mut Model) -> Attachments {
     let mut metadata = std::mem::take(&mut root.metadata);
     let title = metadata.iter().position(|(name, _)| name == "Title").map(|at| metadata.remove(at).1);
     metadata.retain(|(name, _)| name != "Application" && name != "Title");
-    Attachments { title, scene: None, metadata }
+    Attachments { title, metadata, ..Attachments::default() }
 }

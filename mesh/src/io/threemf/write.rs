@@ -1,4 +1,4 @@
-//! Writing a 3MF package: one object in millimetres, metadata, and the scene as a preserved part.
+//! Writing a 3MF package: one object in millimetres, its materials, metadata, and the scene as a preserved part.
 
 use std::io::{Seek, Write};
 
@@ -7,7 +7,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::super::number::write_number;
-use super::super::{Attachments, Format, WriteError, count_for};
+use super::super::{Attachments, Format, TriangleMaterials, WriteError, count_for};
 use super::{CORE, METADATA_NAMESPACE, MODEL_PART, MODEL_RELATIONSHIP, PRESERVE_RELATIONSHIP, SCENE_PART};
 use crate::Mesh;
 
@@ -40,6 +40,9 @@ pub(in super::super) fn write(
 ) -> Result<(), WriteError> {
     count_for(Format::ThreeMf, "vertices", mesh.positions.len(), i32::MAX as u32)?;
     let metadata = metadata_xml(attachments)?;
+    let materials = attachments.materials.as_ref();
+    let materials = materials.map(|all| base_materials(all, mesh).map(|xml| (xml, &all.of_triangles[..])));
+    let materials = materials.transpose()?;
     let scene = attachments.scene.as_deref();
 
     let mut zip = ZipWriter::new(writer);
@@ -56,7 +59,7 @@ pub(in super::super) fn write(
     start(&mut zip, "_rels/.rels")?;
     zip.write_all(relationships(scene.is_some()).as_bytes())?;
     start(&mut zip, MODEL_PART)?;
-    write_model(&mut zip, mesh, &metadata)?;
+    write_model(&mut zip, mesh, &metadata, materials)?;
     if let Some(scene) = scene {
         start(&mut zip, SCENE_PART)?;
         zip.write_all(scene)?;
@@ -105,7 +108,7 @@ fn metadata_xml(attachments: &Attachments) -> Result<String, WriteError> {
         if name == "Application" || names.contains(&name) {
             return Err(refused("a name can be given once, and Application is Trullo"));
         }
-        if value.chars().any(|c| c < ' ' && !"\t\n\r".contains(c) || "\u{FFFE}\u{FFFF}".contains(c)) {
+        if !is_xml(value) {
             return Err(refused("the value has control characters, which XML cannot hold"));
         }
         names.push(name);
@@ -117,13 +120,45 @@ fn metadata_xml(attachments: &Attachments) -> Result<String, WriteError> {
     Ok(xml)
 }
 
-fn write_model(out: &mut impl Write, mesh: &Mesh, metadata: &str) -> Result<(), WriteError> {
+/// Whether XML can hold a text.
+fn is_xml(text: &str) -> bool {
+    !text.chars().any(|c| c < ' ' && !"\t\n\r".contains(c) || "\u{FFFE}\u{FFFF}".contains(c))
+}
+
+/// The materials as a resource of number 2. Errors: [`WriteError::Materials`].
+fn base_materials(all: &TriangleMaterials, mesh: &Mesh) -> Result<String, WriteError> {
+    if all.of_triangles.len() != mesh.triangles.len() {
+        return Err(WriteError::Materials { problem: "each triangle needs one" });
+    }
+    if all.of_triangles.iter().any(|&number| number as usize >= all.materials.len()) {
+        return Err(WriteError::Materials { problem: "a triangle is of one that is not there" });
+    }
+    let mut xml = String::from("  <basematerials id=\"2\">\n");
+    for material in &all.materials {
+        if material.name.is_empty() || !is_xml(&material.name) {
+            return Err(WriteError::Materials { problem: "each needs a name, without control characters" });
+        }
+        let ([red, green, blue], name) = (material.color, escape(&material.name));
+        xml += &format!("   <base name=\"{name}\" displaycolor=\"#{red:02X}{green:02X}{blue:02X}\"/>\n");
+    }
+    Ok(xml + "  </basematerials>\n")
+}
+
+/// Writes the model; `materials` are the resource, and the number that each triangle has there.
+fn write_model(
+    out: &mut impl Write,
+    mesh: &Mesh,
+    metadata: &str,
+    materials: Option<(String, &[u32])>,
+) -> Result<(), WriteError> {
+    let (resource, of_triangles) = materials.unwrap_or_default();
+    let usual = if resource.is_empty() { "" } else { " pid=\"2\" pindex=\"0\"" };
     let mut xml = Vec::with_capacity(CHUNK + 256);
     xml.extend_from_slice(XML);
     write!(
         xml,
         "<model unit=\"millimeter\" xml:lang=\"en-US\" xmlns=\"{CORE}\" xmlns:trullo=\"{METADATA_NAMESPACE}\">\n \
-         {metadata} <resources>\n  <object id=\"1\" type=\"model\">\n   <mesh>\n    <vertices>\n"
+         {metadata} <resources>\n{resource}  <object id=\"1\" type=\"model\"{usual}>\n   <mesh>\n    <vertices>\n"
     )?;
     for position in &mesh.positions {
         for (name, value) in ["<vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(position.to_array()) {
@@ -134,8 +169,12 @@ fn write_model(out: &mut impl Write, mesh: &Mesh, metadata: &str) -> Result<(), 
         flush_full(&mut xml, out)?;
     }
     xml.extend_from_slice(b"    </vertices>\n    <triangles>\n");
-    for [a, b, c] in &mesh.triangles {
-        writeln!(xml, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>")?;
+    for (number, [a, b, c]) in mesh.triangles.iter().enumerate() {
+        write!(xml, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
+        match of_triangles.get(number) {
+            None | Some(0) => xml.extend_from_slice(b"/>\n"),
+            Some(material) => writeln!(xml, " pid=\"2\" p1=\"{material}\"/>")?,
+        }
         flush_full(&mut xml, out)?;
     }
     xml.extend_from_slice(
