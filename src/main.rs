@@ -12,6 +12,7 @@ mod folder;
 mod input;
 mod job;
 mod layer_files;
+mod materials;
 mod meshing;
 mod output;
 mod preview;

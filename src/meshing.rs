@@ -1,12 +1,12 @@
 //! From a scene to a mesh that may be written, and from a mesh to a file.
 
 use crate::cli::{ConstraintArgs, ResolutionArgs};
-use crate::constraint;
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::resolution::cell_size;
-use blobtree::{Node, Scene, Tree};
-use mesh::io::{Attachments, Format};
+use crate::{constraint, materials};
+use blobtree::{BakeStore, Node, NodeRef, Scene, Tree};
+use mesh::io::{Attachments, Format, TriangleMaterials};
 use mesh::{Fault, Mesh, SelfIntersections, Validity, simplify};
 use polygonizer::{CellSize, Options, Surface};
 use std::io::Cursor;
@@ -21,6 +21,28 @@ pub struct Meshed {
     pub cell_mm: f32,
     /// How many support-free nodes were left as drawn.
     pub unconstrained: usize,
+    /// The bakes of its support-free nodes.
+    pub bakes: BakeStore,
+}
+
+impl Meshed {
+    /// What the triangles are made of, for files that can say it; the mesh was simplified by up to `tolerance` mm.
+    ///
+    /// Errors: [`Failure::Interrupted`].
+    pub fn materials(
+        &self,
+        root: &NodeRef,
+        format: Format,
+        tolerance: f64,
+        job: &mut Job,
+    ) -> Result<Option<TriangleMaterials>, Failure> {
+        match format {
+            Format::ThreeMf => {
+                materials::of_mesh(root, &self.bakes, &self.mesh, self.cell_mm, tolerance as f32, job)
+            }
+            _ => Ok(None),
+        }
+    }
 }
 
 /// Meshes a scene. Stages "compile", "size", "constrain" and "mesh".
@@ -42,7 +64,7 @@ pub fn mesh_scene(
     let cell = cell_of(path, &scene.root, &drawn, resolution, job)?;
     let bakes = constraint::bakes(path, &scene.root, constraint, Some(cell), job)?;
     let tree = job.stage("compile", |_| Ok(bakes.compile(&scene.root)))?;
-    mesh_tree(path, &tree, cell, job)
+    Ok(Meshed { bakes, ..mesh_tree(path, &tree, cell, job)? })
 }
 
 /// The cell size for a scene whose tree, as drawn, is `drawn`: the one that was asked for; else the usual one, but no
@@ -68,7 +90,7 @@ pub fn cell_of(
     })
 }
 
-/// Meshes a compiled scene. Stage "mesh".
+/// Meshes a compiled scene, with no bakes in the answer. Stage "mesh".
 ///
 /// Errors: a cell size that is too small for the shape; a shape without any solid.
 pub fn mesh_tree(path: &Path, tree: &Tree, cell: CellSize, job: &mut Job) -> Result<Meshed, Failure> {
@@ -84,7 +106,8 @@ pub fn mesh_tree(path: &Path, tree: &Tree, cell: CellSize, job: &mut Job) -> Res
             );
             return Err(Failure::of(path, what));
         }
-        Ok(Meshed { mesh, cell_mm: cell.mm(), unconstrained: tree.unconstrained() })
+        let (cell_mm, unconstrained) = (cell.mm(), tree.unconstrained());
+        Ok(Meshed { mesh, cell_mm, unconstrained, bakes: BakeStore::new() })
     })
 }
 

@@ -4,6 +4,7 @@ mod common;
 
 use common::{Folder, assert_failed, json_of};
 use serde_json::Value;
+use std::io::{Cursor, Read};
 
 /// A box of 10 × 8 × 6 mm whose underside is at this height, mm.
 fn a_box(bottom: f32) -> String {
@@ -77,13 +78,107 @@ fn a_shape_that_grows_is_cut_at_the_bed_only_if_it_reaches_below() {
     }
 }
 
+/// A post of 4 mm with a bar of 24 mm on top, in a node of this mode.
+fn a_letter_t(mode: &str) -> String {
+    format!(
+        r#"{{"format": "trullo", "version": 1, "root": {{"type": "support_free", "mode": "{mode}", "child":
+        {{"type": "union", "children": [
+            {{"type": "box", "center": [0, 0, 8], "size": [4, 4, 16]}},
+            {{"type": "box", "center": [0, 0, 18], "size": [24, 4, 4]}}]}}}}}}"#
+    )
+}
+
+/// How far outside a letter T a place is, mm; negative inside.
+fn outside_t([x, y, z]: [f64; 3]) -> f64 {
+    let outside_box = |middle: f64, half: [f64; 3]| {
+        let beyond = [x.abs() - half[0], y.abs() - half[1], (z - middle).abs() - half[2]];
+        let most = beyond.into_iter().fold(f64::MIN, f64::max);
+        let squares: f64 = beyond.iter().map(|b| b.max(0.0).powi(2)).sum();
+        if most > 0.0 { squares.sqrt() } else { most }
+    };
+    outside_box(8.0, [2.0, 2.0, 8.0]).min(outside_box(18.0, [12.0, 2.0, 2.0]))
+}
+
+/// The model of a 3MF file, as text.
+fn model_of(file: Vec<u8>) -> String {
+    let mut archive = zip::ZipArchive::new(Cursor::new(file)).expect("it is a zip file");
+    let mut text = String::new();
+    archive.by_name("3D/3dmodel.model").expect("the model").read_to_string(&mut text).expect("it is text");
+    text
+}
+
+/// The numbers in an element's attributes.
+fn numbers(element: &str) -> Vec<f64> {
+    element.split('"').skip(1).step_by(2).map(|text| text.parse().expect("a number")).collect()
+}
+
+/// The middles of the triangles, each with what it is made of.
+fn triangles_of(model: &str) -> Vec<([f64; 3], u32)> {
+    let elements = |name: &str| {
+        let start = format!("<{name} ");
+        model.lines().filter(move |line| line.starts_with(&start)).map(numbers).collect::<Vec<_>>()
+    };
+    let vertices = elements("vertex");
+    let triangle = |corners: Vec<f64>| {
+        let middle = |a: usize| corners[..3].iter().map(|c| vertices[*c as usize][a]).sum::<f64>() / 3.0;
+        ([middle(0), middle(1), middle(2)], corners.get(4).map_or(0, |number| *number as u32))
+    };
+    elements("triangle").into_iter().map(triangle).collect()
+}
+
+#[test]
+fn what_has_grown_is_of_its_own_material_in_a_3mf_file_and_nothing_else_is() {
+    let folder = Folder::with_scene("t.trullo", &a_letter_t("grow"));
+    folder.write("off.trullo", a_letter_t("off"));
+    for arguments in [
+        &["mesh", "t.trullo", "-o", "t.3mf", "--certify"][..],
+        &["support-free", "off.trullo", "-o", "t.3mf", "--operator", "grow"],
+        &["mesh", "t.trullo", "-o", "t.3mf", "--simplify", "0.02"],
+    ] {
+        let out = folder.trullo(arguments);
+        assert_eq!(out.status.code(), Some(0), "{out:?}");
+        let model = model_of(folder.read("t.3mf"));
+        let names: Vec<&str> =
+            model.split("<base name=\"").skip(1).map(|rest| rest.split('"').next().unwrap_or("")).collect();
+        assert_eq!(names, ["model", "grown"]);
+        let triangles = triangles_of(&model);
+        let mut grown = 0;
+        for (middle, material) in &triangles {
+            let [x, y, z] = *middle;
+            let outside = outside_t(*middle);
+            match material {
+                1 => assert!(z < 16.0 && x.abs() > 2.0 && y.abs() < 2.0 && outside > 0.0, "{middle:?}"),
+                _ => assert!(outside < 0.1, "{middle:?} is {outside} mm outside"),
+            }
+            grown += material;
+        }
+        assert!(grown as usize > triangles.len() / 5, "{grown} of {}", triangles.len());
+        // It is read back as any other, and its certificate holds.
+        let check = folder.trullo(&["check", "t.3mf", "--json"]);
+        assert_eq!(check.status.code(), Some(0), "{check:?}");
+        let certified = arguments.contains(&"--certify");
+        assert_eq!(json_of(&check)["certificate"]["holds"] == true, certified, "{check:?}");
+    }
+}
+
+#[test]
+fn a_3mf_file_of_one_material_does_not_speak_of_materials() {
+    let folder = Folder::with_scene("t.trullo", &a_letter_t("trim"));
+    folder.write("grow.trullo", a_letter_t("grow"));
+    for arguments in
+        [&["mesh", "t.trullo", "-o", "t.3mf"][..], &["mesh", "grow.trullo", "-o", "t.3mf", "--no-constraint"]]
+    {
+        let out = folder.trullo(arguments);
+        assert_eq!(out.status.code(), Some(0), "{out:?}");
+        let model = model_of(folder.read("t.3mf"));
+        assert!(!model.contains("basematerials") && !model.contains("pid="), "{arguments:?}");
+    }
+}
+
 #[test]
 fn why_tells_what_was_changed_at_a_place_in_words_and_in_json() {
-    // A post of 4 mm with a bar of 24 mm on top, in a node that is switched off.
-    let scene = r#"{"format": "trullo", "version": 1, "root": {"type": "support_free", "mode": "off", "child":
-        {"type": "union", "children": [
-            {"type": "box", "center": [0, 0, 8], "size": [4, 4, 16]},
-            {"type": "box", "center": [0, 0, 18], "size": [24, 4, 4]}]}}}"#;
+    // In a node that is switched off.
+    let scene = &a_letter_t("off");
     let folder = Folder::with_scene("t.trullo", scene);
     let arguments = ["support-free", "t.trullo", "-o", "out.trullo", "--why", "10,0,18", "--why", "0,0,-3"];
     let out = folder.trullo(&arguments);

@@ -107,6 +107,7 @@ mod field;
 mod field_picture;
 mod imported;
 mod leaf;
+mod materials;
 mod node;
 mod operator;
 mod owners;
@@ -134,6 +135,7 @@ pub use extent::solid_box;
 pub use field::{Aabb, BRICK, BRICK_SAMPLES, Brick, Dirty, Field, ISO, Interval, Sample, Sampler};
 pub use field_picture::FieldPicture;
 pub use imported::ImportedMesh;
+pub use materials::{MaterialFinder, Materials};
 pub use node::{Color, Node, NodePath, NodePathError, NodeRef, Shape};
 pub use operator::{Operator, Sharpness};
 pub use owners::{OwnerFinder, Owners};
@@ -153,6 +155,7 @@ pub use sketched::{
 };
 pub use support_free::{
     Bake, BakeError, BakeStore, Baker, Beyond, BrushKind, BrushStroke, BrushTip, Brushed, GROWN_FALLOFF,
-    MAX_NODE_DABS, SupportFree, SupportMode, VOXEL_BRICK, VOXEL_SAMPLES, VoxelBrick, VoxelImage,
+    GROWN_MATERIAL, MAX_NODE_DABS, SupportFree, SupportMode, VOXEL_BRICK, VOXEL_SAMPLES, VoxelBrick,
+    VoxelImage,
 };
 pub use warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};

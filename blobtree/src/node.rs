@@ -68,6 +68,14 @@ impl Node {
                 || self.children().iter().any(|child| child.holds_support_free()))
     }
 
+    /// The node below these warps, the outermost first.
+    pub(crate) fn under(self: &NodeRef, warps: &[NodeRef]) -> NodeRef {
+        warps.iter().rev().fold(self.clone(), |inner, warp| match &warp.shape {
+            Shape::Warp(warp, _) => Self::new(Shape::Warp(warp.clone(), inner)).into(),
+            _ => inner,
+        })
+    }
+
     /// The name in scene files and on screen of what the node is.
     pub fn type_name(&self) -> &'static str {
         match &self.shape {

@@ -6,10 +6,9 @@
 
 use crate::eval::Tree;
 use crate::field::{Aabb, Field as _, Sampler};
-use crate::node::{Node, NodePath, NodeRef, Shape};
+use crate::node::{NodePath, NodeRef, Shape};
 use crate::operator::Operator;
 use crate::support_free::BakeStore;
-use std::sync::Arc;
 
 /// The parts of a tree, ready to be asked which of them owns a place.
 #[derive(Debug)]
@@ -81,7 +80,7 @@ fn branch(
             let mut candidates = Vec::new();
             for (i, child) in children.iter().enumerate() {
                 if let Some(below) = branch(child, path.child(i), warps, bakes, parts) {
-                    let tree = bakes.compile(&in_world(child, warps));
+                    let tree = bakes.compile(&child.under(warps));
                     candidates.push(Candidate { is_first: i == 0, tree, below });
                 }
             }
@@ -91,13 +90,6 @@ fn branch(
             }
         }
     }
-}
-
-fn in_world(node: &NodeRef, warps: &[NodeRef]) -> NodeRef {
-    warps.iter().rev().fold(node.clone(), |inner, warp| match &warp.shape {
-        Shape::Warp(warp, _) => Arc::new(Node::new(Shape::Warp(warp.clone(), inner))),
-        _ => inner,
-    })
 }
 
 /// How much a child with this value counts in an operator.
@@ -200,6 +192,7 @@ mod tests {
     use crate::build::*;
     use crate::explain::explain;
     use crate::field::ISO;
+    use crate::node::Node;
     use crate::random::RandomTree;
     use glam::Vec3;
 

@@ -10,7 +10,6 @@ use crate::node::{Color, Node, NodeRef, Shape};
 use crate::operator::Operator;
 use crate::support_free::BakeStore;
 use glam::Vec3;
-use std::sync::Arc;
 
 /// The colour of what has none: the limestone of a trullo.
 pub const STONE: Color = Color([226, 216, 200]);
@@ -75,7 +74,7 @@ fn collect(
     let own = own || node.color.is_some();
     if !is_coloured_below(node) {
         if own {
-            parts.push((color.unwrap_or(STONE), in_world(node, warps)));
+            parts.push((color.unwrap_or(STONE), node.under(warps)));
         }
         return;
     }
@@ -97,13 +96,6 @@ fn is_coloured_below(node: &Node) -> bool {
     node.children()
         .iter()
         .any(|child| child.is_heard() && (child.color.is_some() || is_coloured_below(child)))
-}
-
-fn in_world(node: &NodeRef, warps: &[NodeRef]) -> NodeRef {
-    warps.iter().rev().fold(node.clone(), |inner, warp| match &warp.shape {
-        Shape::Warp(warp, _) => Arc::new(Node::new(Shape::Warp(warp.clone(), inner))),
-        _ => inner,
-    })
 }
 
 fn difference(a: Color, b: Color) -> u32 {

@@ -62,6 +62,7 @@ fn in_words(stage: &str) -> &str {
         "constrain" => "making it support-free",
         "mesh" => "making the mesh",
         "simplify" => "leaving out triangles",
+        "materials" => "telling materials apart",
         "verify" => "checking it",
         "encode" | "write" => "writing",
         other => other,
@@ -118,6 +119,8 @@ impl Desk for Files {
             }
             let as_text = options.as_text && format == Format::Stl;
             let format = if as_text { Format::StlAscii } else { format };
+            let moved = f64::from(options.tolerance_mm);
+            attachments.materials = meshed.materials(&scene.root, format, moved, job)?;
             meshing::write_mesh_as(path, path, &meshed.mesh, format, &attachments, job)?;
             let triangles = output::counted(meshed.mesh.triangles.len(), "triangle");
             Ok(format!("{}: {triangles}, cells of {} mm", path.display(), output::short(meshed.cell_mm)))

@@ -26,7 +26,9 @@ pub fn run(args: &ConvertArgs, job: &mut Job) -> Result<Report, Failure> {
         Input::Scene(scene) => {
             let meshed =
                 meshing::mesh_scene(&args.input, &scene, &args.shape.resolution, args.shape.constraint, job)?;
-            let attachments = input::attachments(&args.input, &scene)?;
+            let mut attachments = input::attachments(&args.input, &scene)?;
+            let format = meshing::format_of_output(&args.output)?;
+            attachments.materials = meshed.materials(&scene.root, format, 0.0, job)?;
             meshing::write_mesh(&args.input, &args.output, &meshed.mesh, &attachments, job)?;
             tell(&mut report, &args.output, &meshed);
         }

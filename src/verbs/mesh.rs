@@ -26,6 +26,8 @@ pub fn run(args: &MeshArgs, job: &mut Job) -> Result<Report, Failure> {
         meshed.mesh = meshing::simplified(&meshed.mesh, tolerance, job)?;
     }
     let mut attachments = input::attachments(&args.scene, &scene)?;
+    let moved = args.simplify.unwrap_or(0.0);
+    attachments.materials = meshed.materials(&scene.root, format, moved, job)?;
     let mut certified = Report::default();
     if args.certify {
         let (mesh, rule) = (&meshed.mesh, &args.rule);

@@ -7,7 +7,7 @@ use crate::constraint;
 use crate::failure::Failure;
 use crate::input::{self, Input, Prefer};
 use crate::job::Job;
-use crate::meshing;
+use crate::meshing::{self, Meshed};
 use crate::output::{Report, check_writable, number, short};
 use crate::verbs::mesh::tell;
 use blobtree::build::{Build, primitive};
@@ -73,10 +73,13 @@ pub fn run(args: &SupportFreeArgs, job: &mut Job) -> Result<Report, Failure> {
         Failure::Interrupted => failure,
         Failure::Input(_) => nothing_left(args, &bakes, &scene.root).unwrap_or(failure),
     })?;
-    let attachments = match &args.input {
+    let meshed = Meshed { bakes, ..meshed };
+    let mut attachments = match &args.input {
         path if is_scene(path) => input::attachments(path, &scene)?,
         _ => mesh::io::Attachments { title: scene.title.clone(), ..Default::default() },
     };
+    let format = meshing::format_of_output(&args.output)?;
+    attachments.materials = meshed.materials(&scene.root, format, 0.0, job)?;
     meshing::write_mesh(&args.input, &args.output, &meshed.mesh, &attachments, job)?;
     tell(&mut report, &args.output, &meshed);
     Ok(report)

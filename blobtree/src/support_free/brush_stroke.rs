@@ -15,6 +15,9 @@ use serde::{Deserialize, Serialize, Serializer};
 /// many take ten minutes; a million would take two hours.
 pub const MAX_NODE_DABS: usize = 100_000;
 
+/// The material of what grows, unless a stroke says otherwise.
+pub const GROWN_MATERIAL: u8 = 1;
+
 /// Most places of a stroke.
 const MOST_PLACES: usize = MAX_NODE_DABS;
 
@@ -274,7 +277,7 @@ fn is_default_material(material: &u8) -> bool {
 }
 
 fn usual_grown() -> u8 {
-    1
+    GROWN_MATERIAL
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]

@@ -10,7 +10,7 @@ mod image;
 mod store;
 
 pub use bake::{Bake, BakeError, Baker, Brushed};
-pub use brush_stroke::{BrushKind, BrushStroke, BrushTip, MAX_NODE_DABS};
+pub use brush_stroke::{BrushKind, BrushStroke, BrushTip, GROWN_MATERIAL, MAX_NODE_DABS};
 pub use image::{Beyond, VOXEL_BRICK, VOXEL_SAMPLES, VoxelBrick, VoxelImage};
 pub use store::BakeStore;
 pub(crate) use store::Kept;

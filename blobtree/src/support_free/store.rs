@@ -69,11 +69,7 @@ impl BakeStore {
                 let upright = Tree::compiled_in(&child, &rule.upright_from_child().inverse(), self.kept());
                 let mut bake = baker.bake(&rule, &upright)?;
                 let node = Node::new(Shape::SupportFree(rule.clone(), child.clone()));
-                let with = |bake: &Bake| {
-                    let mut store = self.clone();
-                    store.insert(&rule, &child, bake.clone());
-                    store
-                };
+                let with = |bake: &Bake| self.with(&rule, &child, bake.clone());
                 if !rule.strokes.is_empty() {
                     let store = with(&Bake { cut_at_bed: false, ..bake.clone() });
                     let upright =
@@ -99,6 +95,13 @@ impl BakeStore {
             Shape::SupportFree(rule, child) => self.find(rule, child),
             _ => None,
         }
+    }
+
+    /// The same, but for this node, whose bake is another one.
+    pub(crate) fn with(&self, rule: &SupportFree, child: &NodeRef, bake: Bake) -> Self {
+        let mut store = self.clone();
+        store.insert(rule, child, bake);
+        store
     }
 
     fn insert(&mut self, rule: &SupportFree, child: &NodeRef, bake: Bake) {

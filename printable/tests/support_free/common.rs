@@ -1,6 +1,6 @@
 //! Scenes, and short referees.
 
-use blobtree::build::{Build, cylinder, point};
+use blobtree::build::{Build, cuboid, cylinder, point};
 use blobtree::{BakeStore, Field, ISO, Node, NodeRef, SupportFree, SupportMode, Tree};
 use glam::{Vec2, Vec3};
 use printable::Rebaker;
@@ -27,6 +27,11 @@ pub fn baked(node: impl Into<NodeRef>, rule: SupportFree) -> (NodeRef, BakeStore
 pub fn constrained(node: impl Into<NodeRef>, rule: SupportFree) -> Tree {
     let (root, store) = baked(node, rule);
     store.compile(&root)
+}
+
+/// A post of 4 × 4 × 20 mm with a bar of 24 mm on its top, 4 mm thick.
+pub fn letter_t() -> NodeRef {
+    cuboid([0., 0., 8.], [4., 4., 16.]).union(cuboid([0., 0., 18.], [24., 4., 4.])).into()
 }
 
 /// A ball that stands on a stem: the trimmed ball is a cone from where the stem meets it.

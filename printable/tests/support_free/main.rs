@@ -4,6 +4,7 @@ mod brushes;
 mod common;
 mod field;
 mod grow;
+mod materials;
 mod settle;
 mod store;
 mod trim;

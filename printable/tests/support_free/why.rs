@@ -1,17 +1,12 @@
 //! Why a node is solid or empty somewhere, in scenes whose answers are known.
 
-use crate::common::{baked, ball_on_stem, growing, trimming};
+use crate::common::{baked, ball_on_stem, growing, letter_t, trimming};
 use blobtree::build::{Build, cuboid, cylinder, point, segment};
 use blobtree::{BakeStore, BrushKind, BrushStroke, Field, ISO, NodeRef, SupportFree, SupportMode, Tree};
 use glam::Vec3;
 use polygonizer::CellSize;
 use printable::{Cause, Change, Rebaker};
 use std::sync::Arc;
-
-/// A post of 4 × 4 × 20 mm with a bar of 24 mm on its top, 4 mm thick.
-fn letter_t() -> NodeRef {
-    cuboid([0., 0., 8.], [4., 4., 16.]).union(cuboid([0., 0., 18.], [24., 4., 4.])).into()
-}
 
 fn why(known: &(NodeRef, BakeStore), place: [f32; 3]) -> Vec<Change> {
     let (root, store) = known;
