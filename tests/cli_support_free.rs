@@ -162,6 +162,29 @@ fn what_has_grown_is_of_its_own_material_in_a_3mf_file_and_nothing_else_is() {
 }
 
 #[test]
+fn what_a_stroke_added_is_of_its_material_in_a_3mf_file() {
+    let scene = r#"{"format": "trullo", "version": 1, "root": {"type": "support_free",
+        "child": {"type": "box", "center": [0, 0, 5], "size": [20, 20, 10]}, "strokes": [
+            {"brush": "add_trim", "radius": 2, "places": [[-6, 0, 10]]},
+            {"brush": "add_trim", "radius": 2, "material": 3, "places": [[6, 0, 10]]}]}}"#;
+    let folder = Folder::with_scene("s.trullo", scene);
+    let out = folder.trullo(&["convert", "s.trullo", "s.3mf"]);
+    assert_eq!(out.status.code(), Some(0), "{out:?}");
+    let model = model_of(folder.read("s.3mf"));
+    assert!(model.contains("<base name=\"material 3\"") && model.matches("<base ").count() == 2, "{out:?}");
+    let mut count = 0;
+    for ([x, y, z], material) in triangles_of(&model) {
+        let above = (z - 10.0).max(0.0);
+        match material {
+            0 => assert!(above < 0.15 || x < 0.0, "{x} {y} {z}"),
+            _ => assert!(above > 0.0 && (x - 6.0).hypot(y).hypot(above) < 2.05, "{x} {y} {z}"),
+        }
+        count += material;
+    }
+    assert!(count > 500, "{count}");
+}
+
+#[test]
 fn a_3mf_file_of_one_material_does_not_speak_of_materials() {
     let folder = Folder::with_scene("t.trullo", &a_letter_t("trim"));
     folder.write("grow.trullo", a_letter_t("grow"));

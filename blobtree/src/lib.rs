@@ -156,6 +156,6 @@ pub use sketched::{
 pub use support_free::{
     Bake, BakeError, BakeStore, Baker, Beyond, BrushKind, BrushStroke, BrushTip, Brushed, GROWN_FALLOFF,
     GROWN_MATERIAL, MAX_NODE_DABS, SupportFree, SupportMode, VOXEL_BRICK, VOXEL_SAMPLES, VoxelBrick,
-    VoxelImage,
+    VoxelImage, VoxelMaterials,
 };
 pub use warp::{AffineMap, Axis, Bend, Taper, Transform, Twist, Warp};

@@ -1,14 +1,18 @@
-//! What the solid is made of where: what support-free nodes have grown is of another material than the shape.
+//! What the solid is made of where: what support-free nodes have grown, and what brush strokes have added, may be of
+//! another material than the shape.
 //!
-//! At each support-free node, what its child fills is the child's; the rest was added by the node. Where several parts
-//! are put together, the one with the largest value is asked; what is cut keeps its material.
+//! The field of a support-free node goes through stages: its child, what its mode makes of that, what strokes make of
+//! that. A place is of the first stage in which it is solid. Where several parts are put together, the one with the
+//! largest value is asked; what is cut keeps its material.
 
-use crate::eval::Tree;
+use crate::eval::{Tree, warp_map};
 use crate::field::{Aabb, Field as _, ISO, Sampler};
 use crate::node::{NodeRef, Shape};
 use crate::operator::Operator;
-use crate::support_free::{Bake, BakeStore, GROWN_MATERIAL, SupportFree};
-use glam::Vec3;
+use crate::support_free::{Bake, BakeStore, GROWN_MATERIAL, SupportFree, VoxelMaterials};
+use crate::warp_map::{AffineWarp, WarpMap};
+use glam::{DAffine3, Vec3};
+use std::sync::Arc;
 
 /// The parts of a tree of other materials than 0, ready to be asked for places.
 #[derive(Debug)]
@@ -21,17 +25,43 @@ pub struct Materials {
 enum Branch {
     /// An operator that puts children together.
     Choice(Vec<(Tree, Option<Branch>)>),
-    /// A support-free node that added something.
-    Added(Box<Added>),
+    /// A support-free node that added something: its stages.
+    Added(Vec<(Tree, Source)>),
 }
 
-/// A support-free node in the root's space.
+/// Who made a stage of a support-free node, and so says what is new in it.
 #[derive(Debug)]
-struct Added {
-    drawn: Tree,
-    /// What its mode has made of that.
-    grown: Tree,
-    below: Option<Branch>,
+enum Source {
+    Child(Option<Box<Branch>>),
+    Mode,
+    Strokes(Option<Arc<VoxelMaterials>>, WayBack),
+}
+
+/// From the root's space to that in which a node was baked.
+#[derive(Debug)]
+struct WayBack(Vec<WarpMap>);
+
+impl WayBack {
+    fn new(warps: &[NodeRef], rule: &SupportFree) -> Self {
+        let affine = |map: &DAffine3| WarpMap::Affine(AffineWarp::new(map));
+        let back = |node: &NodeRef| match &node.shape {
+            Shape::Warp(warp, _) => Some(match warp.parent_from_child() {
+                Some(map) => {
+                    let (matrix, offset) = (map.matrix3.as_dmat3(), map.translation.as_dvec3());
+                    affine(&DAffine3::from_mat3_translation(matrix, offset).inverse())
+                }
+                None => warp_map(warp),
+            }),
+            _ => None,
+        };
+        let baked = affine(&rule.upright_from_child());
+        Self(warps.iter().filter_map(back).chain([baked]).collect())
+    }
+
+    fn from(&self, place: Vec3) -> Vec3 {
+        let back = |place, map: &WarpMap| map.child_from_parent::<f32>(place).place;
+        self.0.iter().fold(place.to_array(), back).into()
+    }
 }
 
 impl Materials {
@@ -65,8 +95,8 @@ fn branch(node: &NodeRef, warps: &mut Vec<NodeRef>, bakes: &BakeStore) -> Option
         }
         Shape::SupportFree(rule, child) => {
             let below = branch(child, warps, bakes);
-            match bakes.of(node).filter(|bake| bake.grown.is_some()) {
-                Some(bake) => Some(added(rule, child, node, bake, below, warps, bakes)),
+            match bakes.of(node).filter(|bake| bake.grown.is_some() || bake.brushed.materials.is_some()) {
+                Some(bake) => Some(Branch::Added(stages(node, (rule, child), bake, below, warps, bakes))),
                 None => below,
             }
         }
@@ -86,20 +116,28 @@ fn branch(node: &NodeRef, warps: &mut Vec<NodeRef>, bakes: &BakeStore) -> Option
     }
 }
 
-fn added(
-    rule: &SupportFree,
-    child: &NodeRef,
+/// The stages of a support-free node that add something, from its child on.
+fn stages(
     node: &NodeRef,
+    (rule, child): (&SupportFree, &NodeRef),
     bake: &Bake,
     below: Option<Branch>,
     warps: &[NodeRef],
     bakes: &BakeStore,
-) -> Branch {
-    let Bake { grown, limit, .. } = bake.clone();
-    let unbrushed = bakes.with(rule, child, Bake { grown, limit, ..Bake::default() });
-    let drawn = bakes.compile(&child.under(warps));
-    let grown = unbrushed.compile(&node.under(warps));
-    Branch::Added(Box::new(Added { drawn, grown, below }))
+) -> Vec<(Tree, Source)> {
+    let Bake { grown, limit, brushed, .. } = bake.clone();
+    let of_mode = Bake { grown, limit, ..Bake::default() };
+    let of_strokes = Bake { brushed, ..of_mode.clone() };
+    let stage = |bake: Bake| bakes.with(rule, child, bake).compile(&node.under(warps));
+    let mut stages = vec![(bakes.compile(&child.under(warps)), Source::Child(below.map(Box::new)))];
+    if of_mode.grown.is_some() {
+        stages.push((stage(of_mode), Source::Mode));
+    }
+    if of_strokes.brushed.grown.is_some() {
+        let materials = of_strokes.brushed.materials.clone();
+        stages.push((stage(of_strokes), Source::Strokes(materials, WayBack::new(warps, rule))));
+    }
+    stages
 }
 
 /// Finds the materials of places, for one thread.
@@ -109,83 +147,88 @@ pub struct MaterialFinder<'a> {
 
 enum Finder<'a> {
     Choice(Vec<(Probe<'a>, Option<Finder<'a>>)>),
-    Added(Box<AddedFinder<'a>>),
+    Added(Vec<(Probe<'a>, Teller<'a>)>),
 }
 
-struct AddedFinder<'a> {
-    drawn: Probe<'a>,
-    grown: Probe<'a>,
-    below: Option<Finder<'a>>,
+/// A [`Source`], ready to be asked.
+enum Teller<'a> {
+    Child(Option<Box<Finder<'a>>>),
+    Mode,
+    Strokes(Option<&'a VoxelMaterials>, &'a WayBack),
 }
 
 impl MaterialFinder<'_> {
     /// The material at each place of the solid; just outside it, that of what is nearest. Places should be near each
     /// other.
     pub fn materials(&mut self, places: &[Vec3]) -> Vec<u8> {
-        find(&mut self.top, places)
+        find(self.top.as_mut(), places)
     }
 }
 
 /// The materials at places below something; 0 where nothing is of another one.
-fn find(finder: &mut Option<Finder>, places: &[Vec3]) -> Vec<u8> {
+fn find(finder: Option<&mut Finder>, places: &[Vec3]) -> Vec<u8> {
     match finder {
         _ if places.is_empty() => Vec::new(),
         None => vec![0; places.len()],
-        Some(Finder::Choice(parts)) => choose(parts, places),
-        Some(Finder::Added(node)) => node.find(places),
+        Some(Finder::Choice(parts)) => {
+            choose(parts, f32::INFINITY, places, |below, own| find(below.as_mut(), own))
+        }
+        Some(Finder::Added(stages)) => choose(stages, ISO, places, Teller::find),
     }
 }
 
-fn choose(parts: &mut [(Probe, Option<Finder>)], places: &[Vec3]) -> Vec<u8> {
+/// Asks for each place the one whose field is largest there, or else the first that is `enough`.
+fn choose<T>(
+    all: &mut [(Probe, T)],
+    enough: f32,
+    places: &[Vec3],
+    find: impl Fn(&mut T, &[Vec3]) -> Vec<u8>,
+) -> Vec<u8> {
     let mut best = vec![(f32::NEG_INFINITY, 0); places.len()];
-    for (number, (probe, _)) in parts.iter_mut().enumerate() {
+    for (number, (probe, _)) in all.iter_mut().enumerate() {
         for (best, value) in best.iter_mut().zip(probe.values(places)) {
-            if value > best.0 {
+            if best.0 < enough && value > best.0 {
                 *best = (value, number);
             }
         }
     }
     let mut materials = vec![0; places.len()];
-    for (number, (_, below)) in parts.iter_mut().enumerate() {
-        put(&mut materials, places, |i| best[i].1 == number, |own| find(below, own));
+    for (number, (_, teller)) in all.iter_mut().enumerate() {
+        let which: Vec<usize> = (0..places.len()).filter(|i| best[*i].1 == number).collect();
+        let own: Vec<Vec3> = which.iter().map(|i| places[*i]).collect();
+        which.into_iter().zip(find(teller, &own)).for_each(|(i, material)| materials[i] = material);
     }
     materials
 }
 
-/// Writes the materials of those places whose numbers are wanted.
-fn put(
-    materials: &mut [u8],
-    places: &[Vec3],
-    wanted: impl Fn(usize) -> bool,
-    find: impl FnOnce(&[Vec3]) -> Vec<u8>,
-) {
-    let which: Vec<usize> = (0..places.len()).filter(|i| wanted(*i)).collect();
-    let own: Vec<Vec3> = which.iter().map(|i| places[*i]).collect();
-    which.into_iter().zip(find(&own)).for_each(|(i, material)| materials[i] = material);
-}
-
-impl AddedFinder<'_> {
+impl Teller<'_> {
     fn find(&mut self, places: &[Vec3]) -> Vec<u8> {
-        let (drawn, grown) = (self.drawn.values(places), self.grown.values(places));
-        let is_drawn = |i: usize| drawn[i] >= ISO || grown[i] <= drawn[i];
-        let mut materials = vec![GROWN_MATERIAL; places.len()];
-        put(&mut materials, places, is_drawn, |own| find(&mut self.below, own));
-        materials
+        match self {
+            Self::Child(below) => find(below.as_deref_mut(), places),
+            Self::Mode => vec![GROWN_MATERIAL; places.len()],
+            Self::Strokes(None, _) => vec![0; places.len()],
+            Self::Strokes(Some(materials), way) => {
+                places.iter().map(|place| materials.at(way.from(*place))).collect()
+            }
+        }
     }
 }
 
 impl<'a> Finder<'a> {
     fn new(branch: &'a Branch) -> Self {
-        let optional = |below: &'a Option<Branch>| below.as_ref().map(Self::new);
+        let part =
+            |(tree, below): &'a (Tree, Option<Branch>)| (Probe::new(tree), below.as_ref().map(Self::new));
+        let stage = |(tree, source): &'a (Tree, Source)| {
+            let teller = match source {
+                Source::Child(below) => Teller::Child(below.as_deref().map(|b| Box::new(Self::new(b)))),
+                Source::Mode => Teller::Mode,
+                Source::Strokes(materials, way) => Teller::Strokes(materials.as_deref(), way),
+            };
+            (Probe::new(tree), teller)
+        };
         match branch {
-            Branch::Choice(parts) => {
-                Self::Choice(parts.iter().map(|(tree, below)| (Probe::new(tree), optional(below))).collect())
-            }
-            Branch::Added(node) => Self::Added(Box::new(AddedFinder {
-                drawn: Probe::new(&node.drawn),
-                grown: Probe::new(&node.grown),
-                below: optional(&node.below),
-            })),
+            Branch::Choice(parts) => Self::Choice(parts.iter().map(part).collect()),
+            Branch::Added(stages) => Self::Added(stages.iter().map(stage).collect()),
         }
     }
 }

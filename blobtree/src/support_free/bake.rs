@@ -1,6 +1,6 @@
 //! What an upper room makes of a support-free node's child.
 
-use super::{SupportFree, VoxelImage};
+use super::{SupportFree, VoxelImage, VoxelMaterials};
 use crate::eval::Tree;
 use crate::field::Field;
 use std::sync::Arc;
@@ -35,6 +35,8 @@ pub struct Brushed {
     pub grown: Option<Arc<VoxelImage>>,
     /// The most that the field may be; none if they took nothing away.
     pub limit: Option<Arc<VoxelImage>>,
+    /// What the matter that they added is made of; none if all is of material 0.
+    pub materials: Option<Arc<VoxelMaterials>>,
 }
 
 /// What blobtree needs from the rooms above for trees with support-free nodes.

@@ -8,12 +8,14 @@ mod bake;
 mod brush_stroke;
 mod image;
 mod store;
+mod voxel_materials;
 
 pub use bake::{Bake, BakeError, Baker, Brushed};
 pub use brush_stroke::{BrushKind, BrushStroke, BrushTip, GROWN_MATERIAL, MAX_NODE_DABS};
 pub use image::{Beyond, VOXEL_BRICK, VOXEL_SAMPLES, VoxelBrick, VoxelImage};
 pub use store::BakeStore;
 pub(crate) use store::Kept;
+pub use voxel_materials::VoxelMaterials;
 
 use crate::checks::{Checked, ParameterError, number};
 use crate::field::Aabb;

@@ -98,7 +98,7 @@ impl Baker for Rebaker<'_> {
     /// - **Promises:** the same bytes for any number of threads. Nothing changes but what the strokes reach, what stands
     ///   on that, and, for [`AddGrow`](blobtree::BrushKind::AddGrow), the way down from it.
     /// - **Cost:** that of baking, and for each dab some hundred nanoseconds for each place of the lattice in its tip.
-    ///   Two bytes for each place, ten more where something changed.
+    ///   Two bytes for each place, twelve more where something changed.
     /// - **Source:** Reiner & Lefebvre 2016, §2.2. **Departs:** on the field, as all here; a column is kept where
     ///   preserving by erosion would leave nothing, so that what stands above does not fall.
     fn brush(&self, rule: &SupportFree, node: &dyn Field, bake: Bake) -> Result<Bake, BakeError> {

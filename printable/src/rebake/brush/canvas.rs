@@ -7,6 +7,7 @@ use super::stamp::Block;
 use crate::rebake::TOP;
 use crate::rebake::disc::Layer;
 use crate::rebake::volume::Volume;
+use blobtree::{ISO, VoxelMaterials};
 
 /// By how much a place must change to count as changed.
 pub(super) const FELT: f32 = 1e-3;
@@ -106,21 +107,29 @@ pub(super) struct Canvas {
     pub value: Volume,
     pub grown: Paged,
     pub limit: Paged,
+    /// What was added is made of, where it came to count more than what was there before.
+    pub materials: VoxelMaterials,
 }
 
 impl Canvas {
-    /// One that nothing was done to.
-    pub fn new(value: Volume) -> Self {
+    /// One that nothing was done to, with all of `materials`.
+    pub fn new(value: Volume, materials: VoxelMaterials) -> Self {
         let sides = value.sides;
-        Self { value, grown: Paged::new(sides, 0.0), limit: Paged::new(sides, TOP) }
+        Self { value, grown: Paged::new(sides, 0.0), limit: Paged::new(sides, TOP), materials }
     }
 
     pub fn sides(&self) -> [usize; 3] {
         self.value.sides
     }
 
-    /// Raises the places of a block of one layer to these values; tells which rose.
-    pub fn raise(&mut self, block: &Block, to: &[f32]) -> Option<Changed> {
+    /// Raises the places of a block of one layer to these values; tells which rose. `material` is what those are made of
+    /// that were not solid, by place and value.
+    pub fn raise(
+        &mut self,
+        block: &Block,
+        to: &[f32],
+        material: impl Fn([usize; 3], f32) -> u8,
+    ) -> Option<Changed> {
         self.change(block, to, |canvas, at, to| {
             if to <= 0.0 {
                 return false;
@@ -133,6 +142,9 @@ impl Canvas {
             }
             if to > before {
                 canvas.value.set(at, to);
+                if before < ISO {
+                    canvas.materials.set(at, material(at, to));
+                }
             }
             to > before + FELT
         })

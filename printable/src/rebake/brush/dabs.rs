@@ -34,25 +34,28 @@ pub(super) struct Hand<'a> {
     pub lattice: &'a Lattice,
     /// Where matter grows down to.
     pub paths: Option<&'a PathMap>,
+    /// What is added is made of, and what grows below that.
+    pub materials: [u8; 2],
 }
 
 impl Hand<'_> {
     /// Puts the brush down once.
     pub fn dab(&self, canvas: &mut Canvas, dab: &Dab) {
         let Some(stamp) = self.lattice.stamp(self.shape, dab) else { return };
+        let [material, grown] = self.materials;
         match self.kind {
             BrushKind::AddTrim => {
                 let near = near_surface(canvas, &stamp, self.reach_of(dab), true);
-                add(canvas, &near.unwrap_or(stamp));
+                add(canvas, &near.unwrap_or(stamp), |_, _| material);
             }
             BrushKind::AddGrow => {
                 let near = near_surface(canvas, &stamp, self.reach_of(dab), true);
-                let stamp = near.unwrap_or(stamp);
-                let all = match self.paths {
-                    Some(paths) => along_path(canvas, self.lattice, self.shape, dab, paths, stamp),
-                    None => stamp,
-                };
-                add(canvas, &all);
+                let tip = near.unwrap_or(stamp);
+                let all = self
+                    .paths
+                    .map(|paths| along_path(canvas, self.lattice, self.shape, dab, paths, tip.clone()));
+                let of_tip = |at, to: f32| if tip.value(at) >= to.min(ISO) { material } else { grown };
+                add(canvas, all.as_ref().unwrap_or(&tip), of_tip);
             }
             BrushKind::RemoveTrim => {
                 let carve = self.carve(canvas, &stamp, dab);
@@ -66,7 +69,7 @@ impl Hand<'_> {
             }
             BrushKind::SmoothTrim => {
                 for _ in 0..(3.0 * dab.strength()).ceil() as usize {
-                    smooth(canvas, &stamp);
+                    smooth(canvas, &stamp, material);
                 }
             }
         }
@@ -118,13 +121,13 @@ fn layer_of(block: &Block, z: usize) -> Block {
     layer
 }
 
-/// Adds what of a stamp is carried, from below.
-fn add(canvas: &mut Canvas, stamp: &Stamp) {
+/// Adds what of a stamp is carried, from below; `material` says of what, by place and value.
+fn add(canvas: &mut Canvas, stamp: &Stamp, material: impl Fn([usize; 3], f32) -> u8) {
     for z in stamp.block.low[2]..stamp.block.end[2] {
         let block = layer_of(&stamp.block, z);
         let mut to = carried(canvas, &block);
         to.iter_mut().zip(stamp.layer(z)).for_each(|(to, value)| *to = to.min(*value));
-        canvas.raise(&block, &to);
+        canvas.raise(&block, &to, &material);
     }
 }
 
@@ -245,8 +248,8 @@ fn drop_unsupported(canvas: &mut Canvas, below: &Changed, z: usize) -> Option<Ch
     canvas.lower(&block, &to)
 }
 
-/// One pass: the tip's places go with the mean of the 27 around them.
-fn smooth(canvas: &mut Canvas, stamp: &Stamp) {
+/// One pass: the tip's places go with the mean of the 27 around them; what that adds is of `material`.
+fn smooth(canvas: &mut Canvas, stamp: &Stamp, material: u8) {
     let layers = stamp.block.low[2]..stamp.block.end[2];
     let top = canvas.sides()[2] - 1;
     let targets: Vec<Vec<f32>> = layers
@@ -278,7 +281,7 @@ fn smooth(canvas: &mut Canvas, stamp: &Stamp) {
             up[n] = up[n].min(target[n] - beside);
             down[n] += beside;
         }
-        canvas.raise(&block, &up);
+        canvas.raise(&block, &up, |_, _| material);
         changes.push(canvas.lower(&block, &down));
     }
     topple(canvas, stamp.block.low[2], changes);

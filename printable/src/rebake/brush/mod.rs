@@ -19,6 +19,7 @@ use super::{Rebaker, TOP, grow::sample};
 use crate::brush::dabs_of;
 use blobtree::{
     Aabb, Bake, BakeError, Beyond, BrushKind, Brushed, Field, SupportFree, VoxelBrick, VoxelImage,
+    VoxelMaterials,
 };
 use canvas::{Canvas, FELT, Paged};
 use dabs::Hand;
@@ -40,13 +41,15 @@ pub(super) fn brush(
     let mut volume = Volume::new(&region);
     sample(rebaker, &region, node, &mut volume)?;
     let lattice = Lattice::new(rule, &region);
-    let mut canvas = Canvas::new(volume);
+    let mut canvas = Canvas::new(volume, VoxelMaterials::new(region.spacing, region.low));
     for (number, stroke) in rule.strokes.iter().enumerate() {
         let dabs = dabs_of(stroke)
             .map_err(|e| BakeError::Impossible(format!("`strokes[{number}]` cannot be replayed: {e}")))?;
         let shape = Shape::of(&stroke.tip);
         let paths = (stroke.brush == BrushKind::AddGrow).then(|| PathMap::new(&canvas.value));
-        let hand = Hand { kind: stroke.brush, shape: &shape, lattice: &lattice, paths: paths.as_ref() };
+        let materials = [stroke.material, stroke.grown_material];
+        let hand =
+            Hand { kind: stroke.brush, shape: &shape, lattice: &lattice, paths: paths.as_ref(), materials };
         for dab in &dabs {
             rebaker.go_on()?;
             hand.dab(&mut canvas, dab);
@@ -60,12 +63,13 @@ pub(super) fn brush(
     };
     let felt_grown = |grown: f32, value: f32| grown > 0.0 && grown >= value - FELT;
     let felt_limit = |limit: f32, value: f32| limit < TOP && limit <= value + FELT;
+    // What was added to the first layer goes on below it.
+    bake.cut_at_bed |= region.cut_at_bed || canvas.grown.is_felt_in(0);
     bake.brushed = Brushed {
         grown: image(collect(&region, &canvas, &canvas.grown, felt_grown), Beyond::Nothing)?,
         limit: image(collect(&region, &canvas, &canvas.limit, felt_limit), Beyond::NoLimit)?,
+        materials: (!canvas.materials.is_plain()).then(|| Arc::new(canvas.materials)),
     };
-    // What was added to the first layer goes on below it.
-    bake.cut_at_bed |= region.cut_at_bed || canvas.grown.is_felt_in(0);
     Ok(bake)
 }
 

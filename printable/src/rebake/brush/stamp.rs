@@ -61,6 +61,7 @@ impl Block {
     }
 }
 
+#[derive(Clone)]
 /// The field of a dab: ½ on its surface, more inside, 0 from some way outside on.
 pub(super) struct Stamp {
     pub block: Block,
@@ -167,6 +168,12 @@ impl Lattice {
 }
 
 impl Stamp {
+    /// The value at a place; 0 outside its block.
+    pub fn value(&self, at: [usize; 3]) -> f32 {
+        let inside = (0..3).all(|a| (self.block.low[a]..self.block.end[a]).contains(&at[a]));
+        if inside { self.values[self.block.index(at)] } else { 0.0 }
+    }
+
     /// The greater of two fields.
     pub fn with(self, other: &Self) -> Self {
         let block = self.block.joined(&other.block);
