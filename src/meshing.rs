@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::resolution::cell_size;
 use crate::{constraint, materials};
-use blobtree::{BakeStore, Node, NodeRef, Scene, Tree};
+use blobtree::{BakeStore, Node, NodeRef, Scene, Tree, solid_box};
 use mesh::io::{Attachments, Format, TriangleMaterials};
 use mesh::{Fault, Mesh, SelfIntersections, Validity, simplify};
 use polygonizer::{CellSize, Options, Surface};
@@ -83,7 +83,9 @@ pub fn cell_of(
         let cell = cell_size(resolution, drawn).map_err(failed)?;
         match constraint::finest_layer(root) {
             Some(layer) if resolution.cell.is_none() && resolution.cells.is_none() => {
-                CellSize::from_mm(cell.mm().min(layer)).map_err(failed)
+                // Of a shape that is all brush strokes, nothing is drawn.
+                let usual = if solid_box(drawn).is_empty() { layer } else { cell.mm() };
+                CellSize::from_mm(usual.min(layer)).map_err(failed)
             }
             _ => Ok(cell),
         }

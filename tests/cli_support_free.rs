@@ -249,3 +249,19 @@ fn why_names_the_stroke_of_a_node_within_the_scene() {
     assert_eq!([&change["node"], &change["brush"]], ["/0", "remove_trim"]);
     assert_eq!(change["stroke"], 2);
 }
+
+#[test]
+fn a_shape_that_is_all_brush_strokes_has_cells_as_high_as_a_layer() {
+    let scene = r#"{"format": "trullo", "version": 1, "root": {
+        "type": "support_free",
+        "strokes": [{"brush": "add_trim", "radius": 3, "places": [[0, 0, 2]]}],
+        "child": {"type": "union", "children": []}}}"#;
+    let folder = Folder::with_scene("ball.trullo", scene);
+    for verb in ["mesh", "support-free"] {
+        let out = folder.trullo(&[verb, "ball.trullo", "-o", "ball.stl", "--json"]);
+        assert_eq!(out.status.code(), Some(0), "{verb}: {out:?}");
+        let json = json_of(&out);
+        assert!((number(&json, "cell_mm") - 0.25).abs() < 1e-6, "{verb}: {json:#}");
+        assert!(number(&json, "volume_mm3") > 50.0, "{verb}: {json:#}");
+    }
+}
