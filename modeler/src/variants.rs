@@ -1,6 +1,6 @@
 //! States of a document side by side, each with its own history; one of them is in hand.
 //!
-//! In a scene file they are definitions whose names begin with [`MARK`]; the one in hand is the one that the root uses.
+//! In a scene file they are definitions whose names begin with `variant/`; the one in hand is the one that the root uses.
 
 use crate::meshes;
 use blobtree::{Command, CommandError, Document, JournalEntry, NodeRef, Scene, SceneError};
