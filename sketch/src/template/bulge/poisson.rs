@@ -1,8 +1,8 @@
 //! Poisson's equation inside a curve, by multigrid.
 //!
 //! Nodes beside the curve have shorter arms, to where the distance is 0 (Shortley & Weller 1938): parabolas come out
-//! exactly. Each level has every other node of the one below; thin parts that it misses are solved by the
-//! relaxation alone, which is quick where the curve is near.
+//! exactly. Each level has every other node of the one below, and keeps the slits between them; thin parts that it
+//! misses are solved by the relaxation alone, which is quick where the curve is near.
 
 /// Fewest nodes along a side of a coarser level.
 const FEWEST: usize = 6;
@@ -65,10 +65,12 @@ impl Poisson {
         let mut nodes: Vec<f32> =
             if low[0] < image[0] { (0..size[1]).flat_map(row).copied().collect() } else { vec![1.0] };
         let mut size = if low[0] < image[0] { size } else { [1, 1] };
-        let mut levels = vec![Level::new(&nodes, size)];
+        let mut between = [(); 2].map(|()| vec![f32::NEG_INFINITY; nodes.len()]);
+        let mut levels = vec![Level::new(&nodes, &between, size)];
         while size[0].min(size[1]) >= 2 * FEWEST {
+            between = between_coarser(&nodes, &between, size);
             (nodes, size) = coarser(&nodes, size);
-            let level = Level::new(&nodes, size);
+            let level = Level::new(&nodes, &between, size);
             if level.runs.is_empty() && level.cuts.is_empty() {
                 break;
             }
@@ -89,7 +91,7 @@ impl Poisson {
                 level.correct(coarse);
             }
             for _ in 0..if number == 0 { FINE_CYCLES } else { CYCLES } {
-                cycle(&mut self.levels[number..]);
+                guarded_cycle(&mut self.levels[number..]);
             }
         }
         let level = &self.levels[0];
@@ -100,6 +102,29 @@ impl Poisson {
         }
         solution
     }
+}
+
+/// As [`cycle`], but never for the worse: outside of slits that coarser levels do not see, corrections can grow without
+/// bound. Of one that leaves more to be done than before, the share is kept that leaves the least.
+fn guarded_cycle(levels: &mut [Level]) {
+    levels[0].look_back();
+    let (values, left) = (levels[0].values.clone(), levels[0].left.clone());
+    cycle(levels);
+    let level = &mut levels[0];
+    level.look_back();
+    let sum = |of: &dyn Fn(usize) -> f64| (0..left.len()).map(of).sum::<f64>();
+    let [before, after] = [&left, &level.left].map(|left| sum(&|i| f64::from(left[i]).powi(2)));
+    if after <= before {
+        return;
+    }
+    // What is left changes linearly on the way from the values before to those after.
+    let change = |i: usize| f64::from(left[i]) - f64::from(level.left[i]);
+    let share = sum(&|i| f64::from(left[i]) * change(i)) / sum(&|i| change(i).powi(2));
+    let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 0.0 };
+    for (value, old) in level.values.iter_mut().zip(values) {
+        *value = if share > 0.0 { old + share * (*value - old) } else { old };
+    }
+    (0..COARSEST).for_each(|_| level.relax());
 }
 
 /// One correction of the first level by all coarser ones.
@@ -132,8 +157,24 @@ fn coarser(nodes: &[f32], size: [usize; 2]) -> (Vec<f32>, [usize; 2]) {
     ((0..half[0] * half[1]).map(at).collect(), half)
 }
 
+/// The largest distance on the way from each coarser node to the one in +x, and to the one in +y: slits between nodes
+/// that are both inside.
+fn between_coarser(nodes: &[f32], between: &[Vec<f32>; 2], size: [usize; 2]) -> [Vec<f32>; 2] {
+    let half = size.map(|n| n / 2 + 1);
+    let way = |a: usize, i: usize| {
+        let at = [2 * (i % half[0]), 2 * (i / half[0])];
+        let middle = [at[0] + usize::from(a == 0), at[1] + usize::from(a == 1)];
+        if middle[0] >= size[0] || middle[1] >= size[1] {
+            return f32::NEG_INFINITY;
+        }
+        let [from, middle] = [at, middle].map(|[x, y]| y * size[0] + x);
+        0.5 * between[a][from].max(nodes[middle]).max(between[a][middle])
+    };
+    [0, 1].map(|a| (0..half[0] * half[1]).map(|i| way(a, i)).collect())
+}
+
 impl Level {
-    fn new(distance: &[f32], size: [usize; 2]) -> Self {
+    fn new(distance: &[f32], between: &[Vec<f32>; 2], size: [usize; 2]) -> Self {
         let [width, height] = size;
         let (mut runs, mut cuts): (Vec<[usize; 2]>, Vec<Cut>) = (Vec::new(), Vec::new());
         for y in 1..height.saturating_sub(1) {
@@ -141,7 +182,14 @@ impl Level {
                 if distance[i] >= 0.0 {
                     continue;
                 }
-                let beside = [i - 1, i + 1, i - width, i + width].map(|n| distance[n]);
+                let ways = [between[0][i - 1], between[0][i], between[1][i - width], between[1][i]];
+                let mut beside = [i - 1, i + 1, i - width, i + width].map(|n| distance[n]);
+                for (beside, way) in beside.iter_mut().zip(ways) {
+                    if *beside < 0.0 && way >= 0.0 {
+                        // An arm to the curve somewhere on the first half of the way.
+                        *beside = 2.0 * way - distance[i];
+                    }
+                }
                 if beside.iter().any(|d| *d >= 0.0) {
                     cuts.push(Cut::new(i, distance[i], beside));
                 } else if let Some(run) = runs.last_mut().filter(|run| run[1] == i) {

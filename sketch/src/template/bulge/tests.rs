@@ -93,3 +93,25 @@ fn what_the_image_cannot_show_still_gets_a_bulge() {
     let image = bulge_of(Vec2::splat(1.0), 1.0, 0.5, |_| 0.3, 0.01);
     assert!(image.samples().iter().all(|x| *x <= 0.0));
 }
+
+#[test]
+fn slits_that_coarser_levels_do_not_see_leave_the_height_bounded() {
+    // A disc with three narrow wedges cut into it, as between the fingers of a hand.
+    let [width, height] = [700, 700];
+    let radius = 330.0;
+    for slope in [0.02, 0.05, 0.1] {
+        let distance = |p: Vec2| {
+            let wedge =
+                |x: f32| (slope * (p.y + 0.3 * radius) - (p.x - x).abs()) / (1.0 + slope * slope).sqrt();
+            let wedges = [-140.3, -20.6, 110.1].map(wedge).into_iter().fold(f32::MIN, f32::max);
+            (p.length() - radius).max(wedges)
+        };
+        let place = |i: usize| Vec2::new((i % width) as f32, (i / width) as f32) - Vec2::splat(350.0);
+        let nodes: Vec<f32> = (0..width * height).map(|i| distance(place(i))).collect();
+        let solution = Poisson::new(&nodes, [width, height]).solve();
+        // The disc without slits has the square of its radius.
+        let [least, most] = [f32::min, f32::max].map(|of| solution.iter().copied().fold(0.0, of));
+        assert!(least > -1.0 && most < radius * radius, "{least} to {most} with slope {slope}");
+        assert!(most > 0.2 * radius * radius, "{most} with slope {slope}");
+    }
+}
