@@ -1,7 +1,7 @@
 //! What hangs in the air, by exact slices.
 
 use crate::slices::Slices;
-use crate::slices::clip::{Clipper, Rect, Region, area, grown, pairs, perimeter, total};
+use crate::slices::clip::{Clipper, Rect, Region, area, grown, pairs, perimeter, thinned, total};
 use crate::slices::grid::Grid;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -75,7 +75,8 @@ impl Hanging {
                 *lacks = carrier.lacking(regions, &left);
             }
             let gone: Vec<Region> = lacks.iter().map(|(region, _)| region.clone()).collect();
-            left = (!gone.is_empty()).then(|| clipper.difference(regions, &gone));
+            let mut rest = |gone: &[Region]| thinned(&clipper.difference(regions, gone), slices.grid.step);
+            left = (!gone.is_empty()).then(|| rest(&gone));
         }
         let pieces = |(layer, lacks): (usize, &Lacks)| {
             let z = slices.planes.heights[layer];

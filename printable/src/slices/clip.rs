@@ -1,6 +1,7 @@
 //! Sets of regions in the plane: filling, subtracting, growing. All on one [`Grid`](super::grid::Grid).
 
 use super::grid::Point;
+use glam::DVec2;
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay::{Overlay, ShapeType};
 use i_overlay::core::overlay_rule::OverlayRule;
@@ -60,6 +61,42 @@ pub(crate) fn grown(regions: &[Region], radius: f64, step: f64) -> Vec<Region> {
     let round = IntLineJoin::Round(ArcOptions { max_step, rotation_precision: 32 });
     let style = IntOutlineStyle::new((radius / step).round() as i32).line_join(round);
     regions.outline(&style).expect("construction itself reports no errors, and the grid leaves room to grow")
+}
+
+/// Most points in a row that are left out of an outline.
+const MOST_LEFT_OUT: usize = 64;
+
+/// The regions with no more points than their outlines need: what is left out lies within the error of arcs.
+///
+/// Outlines that are grown, cut and grown again would otherwise gather the arcs of all their pasts.
+pub(crate) fn thinned(regions: &[Region], step: f64) -> Vec<Region> {
+    let off = ARC_ERROR_MM / step;
+    let thin = |region: &Region| region.iter().map(|ring| thinned_ring(ring, off)).collect();
+    regions.iter().map(thin).collect()
+}
+
+/// A ring without the points that are within `off` steps of the straight way between those kept; at least three.
+fn thinned_ring(ring: &[Point], off: f64) -> Vec<Point> {
+    let ends: Vec<Point> = ring.iter().chain(ring.first()).copied().collect();
+    let mut kept = Vec::new();
+    let mut from = 0;
+    while from + 1 < ends.len() {
+        kept.push(ends[from]);
+        let farthest = (from + MOST_LEFT_OUT).min(ends.len() - 1);
+        let fits =
+            |to: &usize| ends[from + 1..*to].iter().all(|p| is_near_way(*p, ends[from], ends[*to], off));
+        from = (from + 2..=farthest).take_while(fits).last().unwrap_or(from + 1);
+    }
+    if kept.len() < 3 { ring.to_vec() } else { kept }
+}
+
+/// Whether a point is within `off` of the straight way from one to another.
+fn is_near_way(p: Point, from: Point, to: Point, off: f64) -> bool {
+    let vector =
+        |a: Point, b: Point| DVec2::new(f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y));
+    let (along, at) = (vector(from, to), vector(from, p));
+    let share = (at.dot(along) / along.length_squared().max(1.0)).clamp(0.0, 1.0);
+    at.distance_squared(share * along) <= off * off
 }
 
 /// Area in square steps.

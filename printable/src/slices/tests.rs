@@ -201,3 +201,46 @@ fn grown_regions_are_round_to_half_a_micrometre() {
         }
     }
 }
+
+/// A ring of so many points, on a circle of this radius, mm.
+fn circle(points: usize, radius: f64, step: f64) -> Vec<Point> {
+    let at = |i: usize| DVec2::from_angle(std::f64::consts::TAU * i as f64 / points as f64) * radius / step;
+    (0..points).map(at).map(|p| Point::new(p.x.round() as i32, p.y.round() as i32)).collect()
+}
+
+#[test]
+fn what_is_grown_again_and_again_keeps_few_points_and_its_form() {
+    let step = 2f64.powi(-20);
+    let mut regions = vec![vec![circle(40, 0.5, step)]];
+    let flat = 0.5 * (std::f64::consts::PI / 40.0).cos();
+    for layer in 1..=60 {
+        regions = clip::thinned(&clip::grown(&regions, 0.258, step), step);
+        let points: usize = regions.iter().flatten().map(Vec::len).sum();
+        assert!(points < 3000, "{points} points in layer {layer}");
+        let reached = 0.258 * f64::from(layer);
+        for p in regions.iter().flatten().flatten() {
+            let far = f64::from(p.x).hypot(f64::from(p.y)) * step;
+            let off = 0.001 * f64::from(layer);
+            assert!(far < 0.5 + reached + 1e-5, "{far} mm in layer {layer}");
+            assert!(far > flat + reached - off, "{far} mm in layer {layer}");
+        }
+    }
+}
+
+#[test]
+fn thinned_rings_stay_within_a_third_of_a_micrometre_of_what_they_were() {
+    let step = 2f64.powi(-20);
+    let mut random = fastrand::Rng::with_seed(5);
+    for _ in 0..50 {
+        let count = random.usize(3..2000);
+        let ring = circle(count, 0.1 + 20.0 * random.f64(), step);
+        let noisy = |p: &Point| Point::new(p.x + random.i32(-200..200), p.y + random.i32(-200..200));
+        let ring: Vec<Point> = ring.iter().map(noisy).collect();
+        let thin = clip::thinned(&[vec![ring.clone()]], step);
+        assert!(thin[0][0].len() >= 3 && thin[0][0].len() <= ring.len());
+        for p in &ring {
+            let (distance, _) = brute_distance(&thin, DVec2::new(f64::from(p.x), f64::from(p.y)));
+            assert!(distance * step < 0.000_301, "{} mm off", distance * step);
+        }
+    }
+}
