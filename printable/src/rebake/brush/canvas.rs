@@ -107,13 +107,13 @@ pub(super) struct Canvas {
     pub value: Volume,
     pub grown: Paged,
     pub limit: Paged,
-    /// What was added is made of, where it came to count more than what was there before.
-    pub materials: VoxelMaterials,
+    /// What was added is made of, where that was not solid; none if nobody asks.
+    pub materials: Option<VoxelMaterials>,
 }
 
 impl Canvas {
-    /// One that nothing was done to, with all of `materials`.
-    pub fn new(value: Volume, materials: VoxelMaterials) -> Self {
+    /// One that nothing was done to; `materials`, without any said, if it is to note them.
+    pub fn new(value: Volume, materials: Option<VoxelMaterials>) -> Self {
         let sides = value.sides;
         Self { value, grown: Paged::new(sides, 0.0), limit: Paged::new(sides, TOP), materials }
     }
@@ -142,8 +142,10 @@ impl Canvas {
             }
             if to > before {
                 canvas.value.set(at, to);
-                if before < ISO {
-                    canvas.materials.set(at, material(at, to));
+                if before < ISO
+                    && let Some(materials) = &mut canvas.materials
+                {
+                    materials.set(at, material(at, to));
                 }
             }
             to > before + FELT

@@ -18,8 +18,8 @@ use super::volume::Volume;
 use super::{Rebaker, TOP, grow::sample};
 use crate::brush::dabs_of;
 use blobtree::{
-    Aabb, Bake, BakeError, Beyond, BrushKind, Brushed, Field, SupportFree, VoxelBrick, VoxelImage,
-    VoxelMaterials,
+    Aabb, Bake, BakeError, Beyond, BrushKind, BrushStroke, Brushed, Field, SupportFree, VoxelBrick,
+    VoxelImage, VoxelMaterials,
 };
 use canvas::{Canvas, FELT, Paged};
 use dabs::Hand;
@@ -41,7 +41,9 @@ pub(super) fn brush(
     let mut volume = Volume::new(&region);
     sample(rebaker, &region, node, &mut volume)?;
     let lattice = Lattice::new(rule, &region);
-    let mut canvas = Canvas::new(volume, VoxelMaterials::new(region.spacing, region.low));
+    let is_colourful = rule.strokes.iter().any(|stroke| is_colourful(stroke));
+    let materials = is_colourful.then(|| VoxelMaterials::new(region.spacing, region.low));
+    let mut canvas = Canvas::new(volume, materials);
     for (number, stroke) in rule.strokes.iter().enumerate() {
         let dabs = dabs_of(stroke)
             .map_err(|e| BakeError::Impossible(format!("`strokes[{number}]` cannot be replayed: {e}")))?;
@@ -68,9 +70,15 @@ pub(super) fn brush(
     bake.brushed = Brushed {
         grown: image(collect(&region, &canvas, &canvas.grown, felt_grown), Beyond::Nothing)?,
         limit: image(collect(&region, &canvas, &canvas.limit, felt_limit), Beyond::NoLimit)?,
-        materials: (!canvas.materials.is_plain()).then(|| Arc::new(canvas.materials)),
+        materials: canvas.materials.filter(|materials| !materials.is_plain()).map(Arc::new),
     };
     Ok(bake)
+}
+
+/// Whether a stroke may add anything of another material than 0.
+fn is_colourful(stroke: &BrushStroke) -> bool {
+    let grows = stroke.brush == BrushKind::AddGrow;
+    stroke.brush.adds() && (stroke.material != 0 || grows && stroke.grown_material != 0)
 }
 
 /// Where strokes may add, in the space in which nodes are baked.

@@ -61,8 +61,8 @@ impl Block {
     }
 }
 
-#[derive(Clone)]
 /// The field of a dab: ½ on its surface, more inside, 0 from some way outside on.
+#[derive(Clone)]
 pub(super) struct Stamp {
     pub block: Block,
     pub values: Vec<f32>,
