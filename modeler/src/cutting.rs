@@ -1,5 +1,6 @@
 //! Holes that go through everything: cuts whose length says no more than that.
 
+use crate::placing::world_from_node;
 use blobtree::{
     AffineMap, LinearSweep, Node, NodePath, NodeRef, Operator, Primitive, Shape, Tree, Warp, solid_box,
 };
@@ -67,37 +68,4 @@ fn world_from_plane(sweep: &LinearSweep, world_from_node: Affine3A) -> Option<Af
     let all = world_from_node * Affine3A::from_mat3_translation(own, plane.origin);
     let size = all.matrix3.determinant();
     (size.is_finite() && size != 0.0).then_some(all)
-}
-
-/// From the space of the node at a path to the world; `None` below warps that bend space.
-pub fn world_from_node(root: &NodeRef, path: &NodePath) -> Option<Affine3A> {
-    let mut all = Affine3A::IDENTITY;
-    let mut node = root;
-    for &index in &path.0 {
-        if let Shape::Warp(warp, _) = &node.shape {
-            all *= warp.parent_from_child()?;
-        }
-        node = node.children().get(index)?;
-    }
-    Some(all)
-}
-
-/// A cut, remembered for as long as nothing changes.
-#[derive(Debug, Default)]
-pub struct KnownCut {
-    of: Option<(NodeRef, NodePath)>,
-    /// The cut at the path; none if there is none.
-    pub cut: Option<Cut>,
-}
-
-impl KnownCut {
-    /// Looks again if anything has changed.
-    pub fn follow(&mut self, root: &NodeRef, path: Option<&NodePath>) {
-        let same = |(known, at): &(NodeRef, NodePath)| NodeRef::ptr_eq(known, root) && path == Some(at);
-        if path.is_some() && self.of.as_ref().is_some_and(same) {
-            return;
-        }
-        self.of = path.map(|path| (root.clone(), path.clone()));
-        self.cut = path.and_then(|path| Cut::of(root, path));
-    }
 }

@@ -89,11 +89,15 @@ pub trait Desk: Send + Sync {
     ) -> Result<String, Undone>;
 
     /// Lets the user choose a file in the system's own window, which begins in a folder, beside the running modeler;
-    /// whether there is such a window.
-    fn browse(&self, purpose: Purpose, folder: Option<&Path>, wake: Arc<dyn Fn() + Send + Sync>) -> bool;
+    /// whether there is such a window. By default there is none.
+    fn browse(&self, _purpose: Purpose, _folder: Option<&Path>, _wake: Arc<dyn Fn() + Send + Sync>) -> bool {
+        false
+    }
 
     /// The file that was chosen since the last look; `Some(None)` if none was.
-    fn browsed(&self) -> Option<Option<PathBuf>>;
+    fn browsed(&self) -> Option<Option<PathBuf>> {
+        None
+    }
 
     /// What makes support-free nodes so in the view. By default they are shown as drawn.
     fn bake(&self) -> Option<Bake> {

@@ -11,16 +11,17 @@ pub use files::{Fetched, How, Newcomer};
 
 use crate::brought::newest;
 use crate::camera::{Camera, Side};
-use crate::cutting::{Cut, KnownCut};
+use crate::cutting::Cut;
 use crate::desk::Desk;
 use crate::dialog::Dialog;
 use crate::errand::Errands;
 use crate::expecting::{Asked, Thinker, Thought};
+use crate::extent;
 use crate::form::Form;
 use crate::kept::Kept;
+use crate::known::Known;
 use crate::lens::Lens;
 use crate::lesson::Lesson;
-use crate::node_box::NodeBox;
 use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
 use crate::panels;
@@ -83,12 +84,12 @@ pub struct Modeler {
     /// The part that the pointer is over in the view.
     pub(crate) pointing: Pointing,
     /// Where the selected nodes are.
-    boxes: Vec<NodeBox>,
-    hovered_box: NodeBox,
+    boxes: Vec<Known<Aabb>>,
+    hovered_box: Known<Aabb>,
     /// Around the selected nodes before they were dragged.
     held_box: Option<Aabb>,
     /// What the selected node is cut out of.
-    cut: KnownCut,
+    cut: Known<Cut>,
     /// The form of the selected node, and the scene it was made for.
     pub(crate) form: Option<(NodeRef, Form)>,
     /// The file to be opened as soon as the size of the view is known, which drawings need.
@@ -144,9 +145,9 @@ impl Modeler {
             hovered: None,
             pointing: Pointing::start(wake.clone())?,
             boxes: Vec::new(),
-            hovered_box: NodeBox::default(),
+            hovered_box: Known::default(),
             held_box: None,
-            cut: KnownCut::default(),
+            cut: Known::default(),
             form: None,
             waiting: None,
             solids,
@@ -280,13 +281,13 @@ impl Modeler {
     fn measure(&mut self) {
         let root = &self.bench.shown().root;
         let selection = self.bench.selection();
-        self.boxes.resize_with(selection.len(), NodeBox::default);
+        self.boxes.resize_with(selection.len(), Known::default);
         for (known, path) in self.boxes.iter_mut().zip(selection) {
-            known.follow(root, Some(path));
+            known.follow(root, Some(path), extent::box_of);
         }
-        self.hovered_box.follow(root, self.hovered.as_ref());
+        self.hovered_box.follow(root, self.hovered.as_ref(), extent::box_of);
         let primitive = self.bench.selected().and_then(|path| view::primitive_at(root, path));
-        self.cut.follow(root, primitive.as_ref());
+        self.cut.follow(root, primitive.as_ref(), Cut::of);
         if NodeRef::ptr_eq(root, &self.bench.scene().root) {
             self.held_box = self.selected_box();
         }
@@ -299,12 +300,12 @@ impl Modeler {
 
     /// The selected part as a cut, if it is one.
     pub fn selected_cut(&self) -> Option<&Cut> {
-        self.cut.cut.as_ref()
+        self.cut.found.as_ref()
     }
 
     /// Around the solid of the node that the pointer is over in the tree, mm.
     pub(crate) fn hovered_box(&self) -> Option<Aabb> {
-        self.hovered_box.solid
+        self.hovered_box.found
     }
 
     /// Whether the solid that is to be shown was asked for.

@@ -47,6 +47,19 @@ pub fn command(root: &NodeRef, path: &NodePath, motion: Motion) -> Option<Comman
     })
 }
 
+/// From the space of the node at a path to the world; `None` below warps that bend space.
+pub fn world_from_node(root: &NodeRef, path: &NodePath) -> Option<Affine3A> {
+    let mut all = Affine3A::IDENTITY;
+    let mut node = root;
+    for &index in &path.0 {
+        if let Shape::Warp(warp, _) = &node.shape {
+            all *= warp.parent_from_child()?;
+        }
+        node = node.children().get(index)?;
+    }
+    Some(all)
+}
+
 /// What puts a mirrored copy of the node at `path` beside it, on the other side of the plane x = 0 of the world. `None`
 /// where no copy can stand beside it: below warps that bend space, and where there is no operator above.
 pub fn mirrored(root: &NodeRef, path: &NodePath) -> Option<Command> {
@@ -55,14 +68,7 @@ pub fn mirrored(root: &NodeRef, path: &NodePath) -> Option<Command> {
     if !matches!(above.shape, Shape::Operator(..)) {
         return None;
     }
-    let mut world_from_parent = Affine3A::IDENTITY;
-    let mut node = root;
-    for &index in &parent.0 {
-        if let Shape::Warp(warp, _) = &node.shape {
-            world_from_parent *= warp.parent_from_child()?;
-        }
-        node = node.children().get(index)?;
-    }
+    let world_from_parent = world_from_node(root, &parent)?;
     let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
     let map = world_from_parent.inverse() * mirror * world_from_parent;
     let (linear, to) = (Mat3::from(map.matrix3), map.translation);

@@ -1,7 +1,7 @@
 //! What is done to the selected parts: one of them or several, always as one step.
 
 use super::Modeler;
-use crate::node_box;
+use crate::extent;
 use crate::placing::{self, Motion};
 use crate::several;
 use blobtree::{Aabb, Command, NodePath, Operator};
@@ -45,7 +45,7 @@ impl Modeler {
 
     /// Around the solid of each selected node, as it is shown, mm.
     pub(crate) fn selected_boxes(&self) -> impl Iterator<Item = Aabb> {
-        self.boxes.iter().filter_map(|known| known.solid)
+        self.boxes.iter().filter_map(|known| known.found)
     }
 
     /// Takes away what is selected.
@@ -85,7 +85,7 @@ impl Modeler {
     pub fn ground_selected(&mut self) {
         let root = &self.bench.scene().root;
         let selection = self.bench.selection().iter();
-        let lowest = selection.filter_map(|path| node_box::lowest(root, path)).reduce(f32::min);
+        let lowest = selection.filter_map(|path| extent::lowest(root, path)).reduce(f32::min);
         if let Some(lowest) = lowest {
             self.place(Motion::Move(Vec3::new(0.0, 0.0, -lowest)), true);
         }

@@ -3,8 +3,9 @@
 //! A knob stands off the part in the direction in which its number grows, as seen on the screen, so that it follows the
 //! hand. Where that direction points to the eye, it stands below, to the left, and grows outwards.
 
-use crate::cutting::{Cut, world_from_node};
+use crate::cutting::Cut;
 use crate::modeler::Modeler;
+use crate::placing::world_from_node;
 use blobtree::{Command, NewShape, NodePath, NodeRef, Operator, Primitive, Shape, Sharpness, SketchPlane};
 use glam::{Vec2, Vec3};
 use sketch::suggest::View;
