@@ -45,13 +45,6 @@ fn check(screen: &mut Screen, what: &str) {
     screen.run_steps(1);
 }
 
-fn snowman() -> Screen {
-    let mut screen = screen(None);
-    press(&mut screen, "See examples");
-    press(&mut screen, "Snowman");
-    screen
-}
-
 #[test]
 fn the_empty_page_and_the_lessons_can_be_used_without_a_hand_on_a_mouse() {
     let mut screen = screen(None);
@@ -75,7 +68,7 @@ fn suggestions_can_be_used_without_a_hand_on_a_mouse() {
 
 #[test]
 fn the_parts_and_their_numbers_can_be_used_without_a_hand_on_a_mouse() {
-    let mut screen = snowman();
+    let mut screen = screen_with_snowman();
     check(&mut screen, "a scene");
     let mut waiting = vec![NodePath::default()];
     let mut kinds = Vec::new();
@@ -98,7 +91,7 @@ fn the_parts_and_their_numbers_can_be_used_without_a_hand_on_a_mouse() {
 
 #[test]
 fn menus_open_and_everything_in_them_is_reached_by_the_keyboard() {
-    let mut screen = snowman();
+    let mut screen = screen_with_snowman();
     screen.state_mut().select(Some(NodePath(vec![0])));
     settle(&mut screen);
     for (menu, item) in
@@ -118,7 +111,7 @@ fn menus_open_and_everything_in_them_is_reached_by_the_keyboard() {
 
 #[test]
 fn questions_and_the_lens_can_be_used_without_a_hand_on_a_mouse() {
-    let mut screen = snowman();
+    let mut screen = screen_with_snowman();
     let keys = [
         (Key::O, Modifiers::COMMAND, "Open"),
         (Key::S, Modifiers::COMMAND, "Save"),
@@ -140,7 +133,7 @@ fn questions_and_the_lens_can_be_used_without_a_hand_on_a_mouse() {
 
 #[test]
 fn a_part_is_chosen_moved_and_copied_with_the_keyboard_alone() {
-    let mut screen = snowman();
+    let mut screen = screen_with_snowman();
     let row = screen.get_all_by_role(egui::accesskit::Role::Button).count();
     assert!(row > 10);
     screen.get_by_label("nose").focus();

@@ -8,14 +8,14 @@ use common::*;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use modeler::How;
-use modeler::desk::{Desk, ExportOptions, Opened, Purpose};
+use modeler::desk::{Desk, ExportOptions, Opened};
 use modeler::dialog::{Dialog, Then};
 use modeler::errand::{Undone, Watch};
 use modeler::workbench::Workbench;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Files that take their time: exporting goes on until the gate is open.
 struct SlowDesk(Arc<AtomicBool>);
@@ -47,14 +47,6 @@ impl Desk for SlowDesk {
         Ok(format!("Exported {}.", path.display()))
     }
 
-    fn browse(&self, _: Purpose, _: Option<&Path>, _: Arc<dyn Fn() + Send + Sync>) -> bool {
-        false
-    }
-
-    fn browsed(&self) -> Option<Option<PathBuf>> {
-        None
-    }
-
     fn examples(&self) -> &'static [(&'static str, &'static str)] {
         TestDesk.examples()
     }
@@ -78,16 +70,6 @@ fn name(screen: &mut Screen, file: &Path) {
     screen.key_combination_modifiers(Modifiers::COMMAND, &[Key::A]);
     screen.event(egui::Event::Text(file.display().to_string()));
     screen.run_steps(2);
-}
-
-/// Lets frames pass until something is so.
-fn until(screen: &mut Screen, is_so: impl Fn(&Screen) -> bool) {
-    let end = Instant::now() + Duration::from_secs(60);
-    while !is_so(screen) {
-        assert!(Instant::now() < end, "it never is");
-        screen.step();
-        std::thread::sleep(Duration::from_millis(1));
-    }
 }
 
 fn ball(x: f32, radius: f32) -> Node {
@@ -230,19 +212,6 @@ fn a_scene_is_added_beside_the_model_in_one_step() {
     assert_eq!(screen.state().bench.selected_node().and_then(|node| node.name.as_deref()), Some("Small one"));
     press(&mut screen, "Undo");
     assert_eq!(parts(&screen).len(), 1);
-}
-
-#[derive(Debug)]
-struct Dropped(PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|e| e.to_string())
-    }
 }
 
 fn drop_on(screen: &mut Screen, files: &[&PathBuf]) {

@@ -14,15 +14,6 @@ fn types(screen: &Screen) -> Vec<&'static str> {
     screen.state().bench.scene().root.children().iter().map(|node| node.type_name()).collect()
 }
 
-/// A screen with the snowman of the gallery on the table.
-fn snowman() -> Screen {
-    let mut screen = screen(None);
-    press(&mut screen, "File");
-    press(&mut screen, "Examples…");
-    press(&mut screen, "Snowman");
-    screen
-}
-
 #[test]
 fn a_drawn_circle_becomes_the_solid_that_is_chosen_for_it() {
     let mut screen = screen(None);
@@ -48,12 +39,7 @@ fn a_drawn_circle_becomes_the_solid_that_is_chosen_for_it() {
 
 #[test]
 fn a_second_stroke_across_grows_out_of_the_first_and_a_third_inside_cuts_a_hole() {
-    let mut screen = screen(None);
-    let at = middle(&screen);
-    draw(&mut screen, circle(at, 110.0));
-    press(&mut screen, "Inflate");
-    draw(&mut screen, circle(at + vec2(110.0, 0.0), 60.0));
-    press(&mut screen, "Grow");
+    let (mut screen, at) = screen_with_two_balls();
     draw(&mut screen, circle(at - vec2(30.0, 0.0), 30.0));
     press(&mut screen, "Cut a hole");
     let undone = screen.state().bench.document().undo_names().count();
@@ -112,7 +98,7 @@ fn what_is_drawn_with_the_eraser_is_rubbed_out() {
 
 #[test]
 fn a_tap_selects_the_part_below_it_and_one_beside_selects_nothing() {
-    let mut screen = snowman();
+    let mut screen = screen_with_snowman();
     assert!(screen.state().solid().is_some_and(|solid| !solid.corners.is_empty()));
     // All of it shows, so the middle of the view is on it.
     let at = middle(&screen);
@@ -125,7 +111,7 @@ fn a_tap_selects_the_part_below_it_and_one_beside_selects_nothing() {
 
 #[test]
 fn the_field_lens_tells_what_makes_the_value_under_the_pen() {
-    let mut screen = snowman();
+    let mut screen = screen_with_snowman();
     screen.key_press(Key::L);
     settle(&mut screen);
     let bar = screen.get_by_label("Lessons").rect().center();

@@ -3,16 +3,10 @@
 mod common;
 
 use common::*;
-use egui::vec2;
 
 #[test]
 fn one_goes_back_to_any_step_and_forward_again() {
-    let mut screen = screen(None);
-    let at = middle(&screen);
-    draw(&mut screen, circle(at, 110.0));
-    press(&mut screen, "Inflate");
-    draw(&mut screen, circle(at + vec2(110.0, 0.0), 60.0));
-    press(&mut screen, "Grow");
+    let (mut screen, _) = screen_with_two_balls();
     screen.state_mut().duplicate_selected();
     settle(&mut screen);
     let parts = |screen: &Screen| screen.state().bench.scene().root.children().len();

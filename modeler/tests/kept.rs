@@ -15,16 +15,6 @@ fn kept_in(folder: &Path) -> Screen {
     screen_with(None, |modeler| modeler.keep_in(folder))
 }
 
-/// Lets frames pass until something is so.
-fn until(screen: &mut Screen, is_so: impl Fn(&Screen) -> bool) {
-    let end = Instant::now() + Duration::from_secs(60);
-    while !is_so(screen) {
-        assert!(Instant::now() < end, "it never is");
-        screen.step();
-        std::thread::sleep(Duration::from_millis(1));
-    }
-}
-
 #[test]
 fn settings_of_the_menus_are_there_at_the_next_start() {
     let folder = tempfile::tempdir().expect("a folder");

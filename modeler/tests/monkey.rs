@@ -55,19 +55,6 @@ const KEYS: [Key; 24] = [
     Key::Backspace,
 ];
 
-#[derive(Debug)]
-struct Dropped(PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|e| e.to_string())
-    }
-}
-
 /// A monkey with its hand on the screen.
 struct Monkey {
     rng: Rng,

@@ -4,11 +4,11 @@
 #![allow(dead_code)]
 
 use blobtree::{DrawingsBy, Scene, SceneSources};
-use egui::{Pos2, pos2};
+use egui::{Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use modeler::Modeler;
-use modeler::desk::{Desk, ExportOptions, Opened, Purpose};
+use modeler::desk::{Desk, ExportOptions, Opened};
 use modeler::errand::{Undone, Watch};
 use modeler::stage::NoStage;
 use sketch::stroke::{DoodleChoice, FileFormat, Sketch, read};
@@ -40,14 +40,6 @@ impl Desk for TestDesk {
 
     fn export(&self, _: &Scene, path: &Path, _: &ExportOptions, _: &Watch) -> Result<String, Undone> {
         Ok(format!("Exported {}.", path.display()))
-    }
-
-    fn browse(&self, _: Purpose, _: Option<&Path>, _: Arc<dyn Fn() + Send + Sync>) -> bool {
-        false
-    }
-
-    fn browsed(&self) -> Option<Option<PathBuf>> {
-        None
     }
 
     fn examples(&self) -> &'static [(&'static str, &'static str)] {
@@ -151,10 +143,54 @@ pub fn seen(screen: &Screen, place: impl Into<glam::Vec3>) -> Pos2 {
     let rect = screen.get_by_label("Model view").rect();
     let view = screen.state().camera.view(glam::Vec2::new(rect.width(), rect.height()));
     let at = view.screen_from_model(place.into()).expect("before the eye");
-    rect.min + egui::vec2(at.x, at.y)
+    rect.min + vec2(at.x, at.y)
 }
 
 /// Drags with the pen from one place to another, in steps, while the model follows.
 pub fn drag(screen: &mut Screen, from: Pos2, by: egui::Vec2) {
     draw(screen, (0..=10).map(|i| from + by * (i as f32 / 10.0)));
+}
+
+/// Lets frames pass until something is so.
+pub fn until(screen: &mut Screen, is_so: impl Fn(&Screen) -> bool) {
+    let end = Instant::now() + Duration::from_secs(60);
+    while !is_so(screen) {
+        assert!(Instant::now() < end, "it never is");
+        screen.step();
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// A file that is dropped on the window.
+#[derive(Debug)]
+pub struct Dropped(pub PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|e| e.to_string())
+    }
+}
+
+/// A screen with two balls, the second one grown out of the first, in the middle of the view; and that middle.
+pub fn screen_with_two_balls() -> (Screen, Pos2) {
+    let mut screen = screen(None);
+    let at = middle(&screen);
+    draw(&mut screen, circle(at, 110.0));
+    press(&mut screen, "Inflate");
+    draw(&mut screen, circle(at + vec2(110.0, 0.0), 60.0));
+    press(&mut screen, "Grow");
+    (screen, at)
+}
+
+/// A screen with the snowman of the gallery on the table.
+pub fn screen_with_snowman() -> Screen {
+    let mut screen = screen(None);
+    press(&mut screen, "File");
+    press(&mut screen, "Examples…");
+    press(&mut screen, "Snowman");
+    screen
 }
