@@ -8,7 +8,6 @@ use common::*;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use modeler::settings::{Habit, Theme};
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 /// A screen whose modeler keeps things in this folder.
 fn kept_in(folder: &Path) -> Screen {

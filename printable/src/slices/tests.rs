@@ -4,7 +4,7 @@ use super::*;
 use glam::{Quat, Vec3};
 use mesh::shapes::{cuboid, cylinder, ico_sphere, torus};
 use polygonizer::Cancel;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 fn height(mm: f32) -> LayerHeight {
     LayerHeight::from_mm(mm).expect("legal")
@@ -176,8 +176,7 @@ fn grown_regions_are_round_to_half_a_micrometre() {
         let corners = random.usize(3..60);
         let mut around = |scale: f64| -> Vec<Point> {
             let at = |i: usize, r: f64| {
-                let p =
-                    DVec2::from_angle(std::f64::consts::TAU * i as f64 / corners as f64) * r * scale / step;
+                let p = DVec2::from_angle(TAU * i as f64 / corners as f64) * r * scale / step;
                 Point::new(p.x.round() as i32, p.y.round() as i32)
             };
             (0..corners).map(|i| at(i, 0.4 + random.f64())).collect()
@@ -204,7 +203,7 @@ fn grown_regions_are_round_to_half_a_micrometre() {
 
 /// A ring of so many points, on a circle of this radius, mm.
 fn circle(points: usize, radius: f64, step: f64) -> Vec<Point> {
-    let at = |i: usize| DVec2::from_angle(std::f64::consts::TAU * i as f64 / points as f64) * radius / step;
+    let at = |i: usize| DVec2::from_angle(TAU * i as f64 / points as f64) * radius / step;
     (0..points).map(at).map(|p| Point::new(p.x.round() as i32, p.y.round() as i32)).collect()
 }
 
@@ -212,7 +211,7 @@ fn circle(points: usize, radius: f64, step: f64) -> Vec<Point> {
 fn what_is_grown_again_and_again_keeps_few_points_and_its_form() {
     let step = 2f64.powi(-20);
     let mut regions = vec![vec![circle(40, 0.5, step)]];
-    let flat = 0.5 * (std::f64::consts::PI / 40.0).cos();
+    let flat = 0.5 * (PI / 40.0).cos();
     for layer in 1..=60 {
         regions = clip::thinned(&clip::grown(&regions, 0.258, step), step);
         let points: usize = regions.iter().flatten().map(Vec::len).sum();
