@@ -1,7 +1,8 @@
 //! How far from what holds it a hanging place reaches.
 
-use crate::slices::clip::{Rect, Region, pairs};
+use crate::slices::clip::{Region, pairs};
 use crate::slices::grid::Grid;
+use crate::slices::rect::Rect;
 use glam::{DVec2, Vec3};
 use mesh::{Bvh, Mesh};
 use std::cmp::Ordering;

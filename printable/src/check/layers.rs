@@ -2,7 +2,8 @@
 
 use super::CheckSettings;
 use super::excess::{Held, farthest};
-use crate::slices::clip::{Clipper, Rect, Region, area, grown, perimeter, total};
+use crate::slices::clip::{Clipper, Region, area, grown, perimeter, total};
+use crate::slices::rect::Rect;
 use crate::slices::{Layer, SliceError, Slices, Tally, Watch};
 use glam::DVec3;
 use rayon::prelude::*;

@@ -1,9 +1,10 @@
 //! The mesh of a node, its slices and what hangs of it, kept up to date where the node changes.
 
 use super::Rebaker;
-use super::hanging::{Hanging, Piece};
+use super::hanging::{Hanging, Piece, Tile};
 use crate::LayerHeight;
-use crate::slices::{Bottom, SliceError, Slices, Watch};
+use crate::slices::outline::Outlines;
+use crate::slices::{SliceError, Watch};
 use blobtree::{BRICK, BakeError, Dirty, SupportFree, Tree};
 use polygonizer::{CellSize, Options, PolygonizeError, Surface};
 
@@ -25,10 +26,10 @@ pub(super) struct Look {
     surface: Surface,
     height: LayerHeight,
     reach: f64,
-    slices: Slices,
+    outlines: Outlines,
     hanging: Hanging,
-    /// Which layers may have changed since they were sliced.
-    stale: Vec<bool>,
+    /// Where each layer may have changed since it was cut.
+    stale: Vec<Vec<Tile>>,
 }
 
 impl Look {
@@ -43,13 +44,13 @@ impl Look {
     ) -> Result<Option<Self>, BakeError> {
         let Some(surface) = meshed(Surface::build(tree, cell, &options(rebaker)))? else { return Ok(None) };
         let Ok(height) = LayerHeight::from_mm(rule.layer_height) else { return Ok(None) };
-        let slices = Slices::new(&surface.mesh(), height, Bottom::LowestPoint, &watch(rebaker));
-        let Some(slices) = sliced(slices)? else { return Ok(None) };
+        let outlines = Outlines::new(&surface.mesh(), height, &watch(rebaker));
+        let Some(outlines) = sliced(outlines)? else { return Ok(None) };
         let reach = f64::from(rule.layer_height) * f64::from(rule.overhang_degrees).to_radians().tan();
         let reach = reach + TOLERANCE_MM;
-        let hanging = Hanging::new(&slices, reach);
-        let stale = vec![false; slices.layers.len()];
-        Ok(Some(Self { surface, height, reach, slices, hanging, stale }))
+        let hanging = Hanging::new(&outlines, reach);
+        let stale = vec![Vec::new(); outlines.layers.len()];
+        Ok(Some(Self { surface, height, reach, outlines, hanging, stale }))
     }
 
     /// Lets the mesh follow the node after changes that can be felt in these boxes only; says whether there still is one.
@@ -62,42 +63,46 @@ impl Look {
             return Ok(false);
         };
         for key in changes.changed.iter().chain(&changes.removed) {
-            let ends = [key[2] * CELLS - AROUND, (key[2] + 1) * CELLS + AROUND];
-            let ends = ends.map(|index| f64::from(index as f32 * cell));
-            let heights = &self.slices.planes.heights;
-            let [first, end] = ends.map(|end| heights.partition_point(|z| *z < end));
-            self.stale[first..end].fill(true);
+            let ends = key.map(|key| {
+                [key * CELLS - AROUND, (key + 1) * CELLS + AROUND].map(|index| f64::from(index as f32 * cell))
+            });
+            let heights = &self.outlines.planes.heights;
+            let [first, end] = ends[2].map(|end| heights.partition_point(|z| *z < end));
+            let [low, high] = [0, 1].map(|end| self.hanging.tile_of(ends[0][end], ends[1][end]));
+            self.stale[first..end].iter_mut().for_each(|tiles| tiles.extend(Tile::all(low, high)));
         }
         Ok(true)
     }
 
-    /// Brings slices up to date with the mesh; says whether there still are some.
+    /// Brings outlines up to date with the mesh; says whether there still are some.
     ///
-    /// - **Cost:** that of the layers of bricks that have changed, and a pass over all triangles.
+    /// - **Cost:** that of the outlines of layers of bricks that have changed, of looking at them where they have, and
+    ///   a pass over all triangles.
     /// - **Errors:** [`BakeError::Cancelled`].
     pub fn slice(&mut self, rebaker: &Rebaker) -> Result<bool, BakeError> {
         let mesh = self.surface.mesh();
-        let moved = (f64::from(mesh.bounds().min.z) - self.slices.planes.bottom).abs();
+        let moved = (f64::from(mesh.bounds().min.z) - self.outlines.planes.bottom).abs();
         if moved > SAME_BOTTOM_MM {
-            let slices = Slices::new(&mesh, self.height, Bottom::LowestPoint, &watch(rebaker));
-            let Some(slices) = sliced(slices)? else { return Ok(false) };
-            self.hanging = Hanging::new(&slices, self.reach);
-            self.stale = vec![false; slices.layers.len()];
-            self.slices = slices;
+            let outlines = Outlines::new(&mesh, self.height, &watch(rebaker));
+            let Some(outlines) = sliced(outlines)? else { return Ok(false) };
+            self.hanging = Hanging::new(&outlines, self.reach);
+            self.stale = vec![Vec::new(); outlines.layers.len()];
+            self.outlines = outlines;
             return Ok(true);
         }
-        let stale: Vec<usize> = (0..self.stale.len()).filter(|layer| self.stale[*layer]).collect();
-        self.stale.fill(false);
-        let Some(different) = sliced(self.slices.renew(&mesh, &stale, &watch(rebaker)))? else {
+        let stale: Vec<usize> =
+            (0..self.stale.len()).filter(|layer| !self.stale[*layer].is_empty()).collect();
+        if sliced(self.outlines.renew(&mesh, &stale, &watch(rebaker)))?.is_none() {
             return Ok(false);
-        };
-        self.hanging.renew(&self.slices, &different);
+        }
+        self.hanging.renew(&self.outlines, &self.stale);
+        self.stale.iter_mut().for_each(Vec::clear);
         Ok(true)
     }
 
     /// All that must go; places of a piece are no farther apart than `pitch`, mm.
     pub fn pieces(&self, pitch: f64) -> Vec<Piece> {
-        self.hanging.pieces(&self.slices, pitch)
+        self.hanging.pieces(&self.outlines, pitch)
     }
 }
 
@@ -129,6 +134,7 @@ fn sliced<T>(result: Result<T, SliceError>) -> Result<Option<T>, BakeError> {
 mod tests {
     use super::super::dents::Dents;
     use super::*;
+    use crate::slices::clip::doubled_area;
     use blobtree::build::{Build, cuboid, point, segment};
     use blobtree::{Bake, BakeStore, Baker, Field, Node, NodeRef, SupportMode};
     use std::sync::Arc;
@@ -172,9 +178,15 @@ mod tests {
                 assert!(kept.surface == fresh.surface, "round {round}: the mesh differs");
                 assert_eq!(kept.surface.mesh(), fresh.surface.mesh(), "round {round}");
                 // Outlines may begin elsewhere, and lie on another grid.
-                assert_eq!(kept.slices.layers.len(), fresh.slices.layers.len(), "round {round}");
-                for layer in 0..fresh.slices.layers.len() {
-                    let apart = kept.slices.area(layer) - fresh.slices.area(layer);
+                assert_eq!(kept.outlines.layers.len(), fresh.outlines.layers.len(), "round {round}");
+                for layer in 0..fresh.outlines.layers.len() {
+                    let [kept, fresh] = [&kept, &fresh].map(|look| {
+                        let outlines = &look.outlines.layers[layer];
+                        let doubled =
+                            outlines.iter().map(|outline| doubled_area(&outline.ring)).sum::<i128>();
+                        look.outlines.grid.square_mm(0.5 * doubled as f64)
+                    });
+                    let apart = kept - fresh;
                     assert!(apart.abs() < 1e-4, "round {round}, layer {layer}: {apart} mm² apart");
                 }
                 let hanging =

@@ -5,7 +5,9 @@ use glam::DVec2;
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay::{Overlay, ShapeType};
 use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::core::solver::{Precision, Solver, Strategy};
 use i_overlay::i_float::int::angle::Angle;
+use i_overlay::i_shape::source::int::resource::IntShapeResource;
 use i_overlay::mesh::int::arc::ArcOptions;
 use i_overlay::mesh::int::outline::offset::IntOutlineOffset;
 use i_overlay::mesh::int::style::{IntLineJoin, IntOutlineStyle};
@@ -17,38 +19,67 @@ pub(crate) type Region = Vec<Vec<Point>>;
 /// How far the straight pieces of a round corner may lie inside the true arc, mm.
 const ARC_ERROR_MM: f64 = 0.000_3;
 
+/// From so many points on, the clipper looks for crossings in columns of the plane instead of along one sweep: with the
+/// short sides of outlines, that takes about half the time.
+const MANY: usize = 2_000;
+
 /// A clipper whose memory is used again and again.
 pub(crate) struct Clipper {
     overlay: Overlay<i32>,
+    points: usize,
 }
 
 impl Clipper {
     pub(crate) fn new() -> Self {
-        Self { overlay: Overlay::new(0) }
+        Self { overlay: Overlay::new(0), points: 0 }
     }
 
     /// The regions around which `loops` wind a positive number of times.
-    pub(crate) fn fill(&mut self, loops: &[Vec<Point>]) -> Vec<Region> {
+    pub(crate) fn fill<L: IntShapeResource<i32> + ?Sized>(&mut self, loops: &L) -> Vec<Region> {
+        self.clear();
+        self.add(loops, ShapeType::Subject);
+        self.combined(OverlayRule::Subject)
+    }
+
+    /// What is in `a` and not in `b`; both are regions, or loops as for [`Self::fill`].
+    pub(crate) fn difference<A, B>(&mut self, a: &A, b: &B) -> Vec<Region>
+    where
+        A: IntShapeResource<i32> + ?Sized,
+        B: IntShapeResource<i32> + ?Sized,
+    {
+        self.clear();
+        self.add(a, ShapeType::Subject);
+        self.add(b, ShapeType::Clip);
+        self.combined(OverlayRule::Difference)
+    }
+
+    /// What is in both; regions or loops.
+    pub(crate) fn intersection<A, B>(&mut self, a: &A, b: &B) -> Vec<Region>
+    where
+        A: IntShapeResource<i32> + ?Sized,
+        B: IntShapeResource<i32> + ?Sized,
+    {
+        self.clear();
+        self.add(a, ShapeType::Subject);
+        self.add(b, ShapeType::Clip);
+        self.combined(OverlayRule::Intersect)
+    }
+
+    fn clear(&mut self) {
         self.overlay.clear();
-        self.overlay.add_source(loops, ShapeType::Subject);
-        self.overlay.overlay(OverlayRule::Subject, FillRule::Positive)
+        self.points = 0;
     }
 
-    /// What is in `a` and not in `b`.
-    pub(crate) fn difference(&mut self, a: &[Region], b: &[Region]) -> Vec<Region> {
-        self.combine(a, b, OverlayRule::Difference)
+    fn add<R: IntShapeResource<i32> + ?Sized>(&mut self, rings: &R, role: ShapeType) {
+        self.points += rings.iter_paths().map(<[Point]>::len).sum::<usize>();
+        self.overlay.add_source(rings, role);
     }
 
-    /// What is in both.
-    pub(crate) fn intersection(&mut self, a: &[Region], b: &[Region]) -> Vec<Region> {
-        self.combine(a, b, OverlayRule::Intersect)
-    }
-
-    fn combine(&mut self, a: &[Region], b: &[Region], rule: OverlayRule) -> Vec<Region> {
-        self.overlay.clear();
-        self.overlay.add_source(a, ShapeType::Subject);
-        self.overlay.add_source(b, ShapeType::Clip);
-        self.overlay.overlay(rule, FillRule::NonZero)
+    fn combined(&mut self, rule: OverlayRule) -> Vec<Region> {
+        let strategy = if self.points < MANY { Strategy::Auto } else { Strategy::Frag };
+        // Layers have a thread each, so none more is asked for.
+        self.overlay.solver = Solver { strategy, precision: Precision::HIGH, multithreading: None };
+        self.overlay.overlay(rule, FillRule::Positive)
     }
 }
 
@@ -109,8 +140,8 @@ pub(crate) fn total(regions: &[Region]) -> f64 {
     regions.iter().map(area).fold(0.0, |sum, area| sum + area)
 }
 
-/// Twice the signed area, exact.
-fn doubled_area(ring: &[Point]) -> i128 {
+/// Twice the signed area of a ring, in square steps, exact.
+pub(crate) fn doubled_area(ring: &[Point]) -> i128 {
     pairs(ring)
         .map(|(a, b)| i128::from(i64::from(a.x) * i64::from(b.y) - i64::from(a.y) * i64::from(b.x)))
         .sum()
@@ -127,40 +158,7 @@ pub(crate) fn pairs(ring: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_
     ring.iter().copied().zip(next.copied())
 }
 
-fn distance(a: Point, b: Point) -> f64 {
+/// In steps.
+pub(crate) fn distance(a: Point, b: Point) -> f64 {
     (f64::from(a.x) - f64::from(b.x)).hypot(f64::from(a.y) - f64::from(b.y))
-}
-
-/// A box in the plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Rect {
-    pub(crate) min: Point,
-    pub(crate) max: Point,
-}
-
-impl Rect {
-    /// The box of everything in `regions`; none around nothing.
-    pub(crate) fn around<'a>(regions: impl IntoIterator<Item = &'a Region>) -> Option<Self> {
-        let outlines = regions.into_iter().filter_map(|region| region.first());
-        outlines.flatten().fold(None, |known: Option<Self>, &p| {
-            let Some(Self { min, max }) = known else { return Some(Self { min: p, max: p }) };
-            let (min, max) =
-                (Point::new(min.x.min(p.x), min.y.min(p.y)), Point::new(max.x.max(p.x), max.y.max(p.y)));
-            Some(Self { min, max })
-        })
-    }
-
-    /// Whether two boxes come closer than `gap` steps along both axes.
-    pub(crate) fn is_near(&self, other: &Self, gap: i32) -> bool {
-        let apart = |low: i32, high: i32| i64::from(low) - i64::from(high) > i64::from(gap);
-        !(apart(self.min.x, other.max.x)
-            || apart(other.min.x, self.max.x)
-            || apart(self.min.y, other.max.y)
-            || apart(other.min.y, self.max.y))
-    }
-
-    /// Its diagonal, in steps.
-    pub(crate) fn diagonal(&self) -> f64 {
-        distance(self.min, self.max)
-    }
 }

@@ -13,7 +13,9 @@ pub(crate) mod clip;
 mod cut;
 mod error;
 pub(crate) mod grid;
+pub(crate) mod outline;
 mod planes;
+pub(crate) mod rect;
 mod watch;
 
 pub use error::{MOST_CROSSINGS, MOST_LAYERS, SliceError, WIDEST_MM};
@@ -22,7 +24,7 @@ pub(crate) use watch::Tally;
 pub use watch::Watch;
 
 use crate::LayerHeight;
-use chain::chain;
+use chain::{Loops, chain};
 use clip::{Clipper, Region};
 use cut::{CHUNK, Cutter};
 use glam::DVec2;
@@ -61,31 +63,8 @@ impl Slices {
         let bounds = mesh.bounds();
         let planes = Planes::new(&bounds, height, bottom)?;
         let grid = Grid::over(&bounds)?;
-        let layers = cut(mesh, &planes.heights, grid, watch)?;
+        let layers = cut(mesh, &planes.heights, grid, watch, filled(&grid))?;
         Ok(Self { planes, layers, grid })
-    }
-
-    /// Cuts these layers, in ascending order, anew after a change of the mesh that left its lowest point where it was;
-    /// says which of them are different now.
-    ///
-    /// Errors: as [`Self::new`].
-    pub(crate) fn renew(
-        &mut self,
-        mesh: &Mesh,
-        layers: &[usize],
-        watch: &Watch,
-    ) -> Result<Vec<usize>, SliceError> {
-        check(mesh)?;
-        let heights: Vec<f64> = layers.iter().map(|layer| self.planes.heights[*layer]).collect();
-        let cut = cut(mesh, &heights, self.grid, watch)?;
-        let mut different = Vec::new();
-        for (layer, new) in layers.iter().zip(cut) {
-            if self.layers[*layer] != new {
-                self.layers[*layer] = new;
-                different.push(*layer);
-            }
-        }
-        Ok(different)
     }
 
     /// The regions of a layer, as rings of places in mm: each region's outline counter-clockwise, then its holes
@@ -121,7 +100,7 @@ impl Layer {
 pub(crate) fn slice_at(mesh: &Mesh, height: f64) -> Result<(Grid, Layer), SliceError> {
     check(mesh)?;
     let grid = Grid::over(&mesh.bounds())?;
-    let mut layers = cut(mesh, &[height], grid, &Watch::default())?;
+    let mut layers = cut(mesh, &[height], grid, &Watch::default(), filled(&grid))?;
     Ok((grid, layers.pop().unwrap_or_default()))
 }
 
@@ -135,7 +114,14 @@ fn check(mesh: &Mesh) -> Result<(), SliceError> {
     }
 }
 
-fn cut(mesh: &Mesh, planes: &[f64], grid: Grid, watch: &Watch) -> Result<Vec<Layer>, SliceError> {
+/// Cuts a mesh at these heights; `finish` makes of a plane's loops, with the solid on their left, what is kept of them.
+fn cut<T: Send>(
+    mesh: &Mesh,
+    planes: &[f64],
+    grid: Grid,
+    watch: &Watch,
+    finish: impl Fn(&mut Clipper, Loops) -> T + Sync,
+) -> Result<Vec<T>, SliceError> {
     let cutter = Cutter::new(mesh, planes, grid)?;
     let inward = mesh.volume() < 0.0;
     let tally = Tally::new(watch, cutter.chunks());
@@ -143,25 +129,30 @@ fn cut(mesh: &Mesh, planes: &[f64], grid: Grid, watch: &Watch) -> Result<Vec<Lay
         if watch.is_cancelled() {
             return Err(SliceError::Cancelled);
         }
-        let crossings = cutter.cut(chunk);
-        let layers = crossings.iter().map(|crossings| layer(crossings, inward, &grid, clipper)).collect();
+        let mut layer = |crossings: &Vec<cut::Crossing>| {
+            let mut loops = chain(crossings);
+            if inward {
+                loops.closed.iter_mut().for_each(|points| points.reverse());
+            }
+            finish(clipper, loops)
+        };
+        let layers: Vec<T> = cutter.cut(chunk).iter().map(&mut layer).collect();
         tally.step();
         Ok(layers)
     };
-    let chunks: Result<Vec<Vec<Layer>>, _> =
+    let chunks: Result<Vec<Vec<T>>, _> =
         (0..cutter.chunks()).into_par_iter().map_init(Clipper::new, chunk).collect();
     let mut layers = Vec::with_capacity(cutter.chunks() * CHUNK);
     layers.extend(chunks?.into_iter().flatten());
     Ok(layers)
 }
 
-fn layer(crossings: &[cut::Crossing], inward: bool, grid: &Grid, clipper: &mut Clipper) -> Layer {
-    let mut loops = chain(crossings);
-    if inward {
-        loops.closed.iter_mut().for_each(|points| points.reverse());
+/// Fills the loops of a plane.
+fn filled(grid: &Grid) -> impl Fn(&mut Clipper, Loops) -> Layer {
+    |clipper, loops| {
+        let open = loops.open.iter().map(|&p: &Point| grid.place(p)).collect();
+        Layer { regions: clipper.fill(&loops.closed), open }
     }
-    let open: Vec<DVec2> = loops.open.iter().map(|&p: &Point| grid.place(p)).collect();
-    Layer { regions: clipper.fill(&loops.closed), open }
 }
 
 #[cfg(test)]

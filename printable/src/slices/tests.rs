@@ -1,5 +1,8 @@
 //! Slices against closed forms, and what meshes can have wrong.
 
+use super::clip::pairs;
+use super::outline::Outline;
+use super::rect::Rect;
 use super::*;
 use glam::{Quat, Vec3};
 use mesh::shapes::{cuboid, cylinder, ico_sphere, torus};
@@ -157,7 +160,7 @@ fn a_cancelled_cut_ends_and_progress_reaches_the_end() {
 fn brute_distance(regions: &[Region], p: DVec2) -> (f64, bool) {
     let place = |p: Point| DVec2::new(f64::from(p.x), f64::from(p.y));
     let (mut nearest, mut inside) = (f64::INFINITY, false);
-    for (a, b) in regions.iter().flatten().flat_map(|ring| clip::pairs(ring)) {
+    for (a, b) in regions.iter().flatten().flat_map(|ring| pairs(ring)) {
         let (a, b) = (place(a), place(b));
         let along = ((p - a).dot(b - a) / a.distance_squared(b)).clamp(0.0, 1.0);
         nearest = nearest.min(p.distance(a.lerp(b, along)));
@@ -240,6 +243,35 @@ fn thinned_rings_stay_within_a_third_of_a_micrometre_of_what_they_were() {
         for p in &ring {
             let (distance, _) = brute_distance(&thin, DVec2::new(f64::from(p.x), f64::from(p.y)));
             assert!(distance * step < 0.000_301, "{} mm off", distance * step);
+        }
+    }
+}
+
+#[test]
+fn what_is_clipped_to_a_box_winds_around_its_places_as_before() {
+    let mut rng = fastrand::Rng::with_seed(3);
+    let rect = Rect { min: Point::new(-400, -300), max: Point::new(500, 350) };
+    for round in 0..200 {
+        // Rings of any form, most of which cross themselves.
+        let corner = |rng: &mut fastrand::Rng| Point::new(rng.i32(-1000..1000), rng.i32(-1000..1000));
+        let ring: Vec<Point> = (0..rng.usize(3..20)).map(|_| corner(&mut rng)).collect();
+        let whole = Outline { rect: Rect::of_points(&ring).expect("points"), ring: ring.clone() };
+        let ring = rect.clipped(&ring);
+        let Some(own) = Rect::of_points(&ring) else { continue };
+        assert!(rect.contains(own.min) && rect.contains(own.max), "round {round}: {own:?}");
+        let clipped = Outline { rect: own, ring };
+        for _ in 0..40 {
+            let p = Point::new(rng.i32(-395..495), rng.i32(-295..345));
+            let near = |outline: &Outline| {
+                pairs(&outline.ring).any(|(a, b)| {
+                    let [a, b, p] = [a, b, p].map(|p| DVec2::new(f64::from(p.x), f64::from(p.y)));
+                    let share = ((p - a).dot(b - a) / (b - a).length_squared().max(1.0)).clamp(0.0, 1.0);
+                    p.distance(a.lerp(b, share)) < 2.0
+                })
+            };
+            if !near(&whole) && !near(&clipped) {
+                assert_eq!(whole.winding(p), clipped.winding(p), "round {round}: {p:?}");
+            }
         }
     }
 }
