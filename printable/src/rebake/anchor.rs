@@ -7,8 +7,15 @@ use blobtree::{Brick, Field, ISO, Sample};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// How far inside its outline, in lattice steps, a first layer counts as well inside.
-const DEEP: f32 = 3.0;
+/// How far inside its outline, in lattice steps, a first layer rises; farther inside is well inside.
+///
+/// Where the field is flat, it has not reached [`TOP`] there, and the jump is carried outwards by the interpolation of
+/// what the layers above can reach. So it must be far away: at 3, cones on drawings blown up flat began up to 6°
+/// too wide.
+const RAMP: f32 = 24.0;
+
+/// How far inside a layer, along x or y, is well inside, in lattice steps.
+const DEEP: isize = 3;
 
 /// Halvings of a step in which an outline is looked for.
 const HALVINGS: usize = 4;
@@ -27,8 +34,8 @@ pub(super) fn anchor(region: &Region, first: &Layer, child: &dyn Field) -> Layer
     let depth = first.values.len() / width;
     for &(at, slope) in &outline {
         let around = |x: f32, most: usize| {
-            let low = (x - DEEP).ceil().max(0.0) as usize;
-            low..((x + DEEP).floor().max(0.0) as usize + 1).min(most)
+            let low = (x - RAMP).ceil().max(0.0) as usize;
+            low..((x + RAMP).floor().max(0.0) as usize + 1).min(most)
         };
         for y in around(at[1], depth) {
             for x in around(at[0], width) {
@@ -46,7 +53,7 @@ pub(super) fn anchor(region: &Region, first: &Layer, child: &dyn Field) -> Layer
 
 /// Sets to [`TOP`] what is farther inside a layer, along x or y, than [`DEEP`].
 pub(super) fn lift(layer: &mut Layer) {
-    let (width, reach) = (layer.width, DEEP as isize);
+    let (width, reach) = (layer.width, DEEP);
     let outside: Vec<bool> = layer.values.iter().map(|value| *value < ISO).collect();
     let depth = (outside.len() / width) as isize;
     let along_x = |row: &[bool], x: usize| {

@@ -24,6 +24,22 @@ impl Layer {
         let start = row.clamp(0, last) as usize * self.width;
         &self.values[start..start + self.width]
     }
+
+    /// Writes, for each place of a row, the least value as far as `reach` steps from it along x and y.
+    pub fn least(&self, row: usize, reach: usize, out: &mut Vec<f32>) {
+        let mut lowest = self.row(row as isize).to_vec();
+        for other in (1..=reach as isize).flat_map(|by| [row as isize - by, row as isize + by]) {
+            let values = self.row(other);
+            lowest.iter_mut().zip(values).for_each(|(lowest, value)| *lowest = lowest.min(*value));
+        }
+        out.clear();
+        out.extend_from_slice(&lowest);
+        for by in 1..=reach.min(lowest.len() - 1) {
+            let [first, last] = [by, lowest.len() - by];
+            out[..last].iter_mut().zip(&lowest[first..]).for_each(|(out, value)| *out = out.min(*value));
+            out[first..].iter_mut().zip(&lowest[..last]).for_each(|(out, value)| *out = out.min(*value));
+        }
+    }
 }
 
 /// Writes, for each place of a row, the greatest value of `layer` on the circle of `radius` steps, at most 1, around

@@ -28,6 +28,10 @@ const ROWS: usize = 16;
 /// blend, with 0.05 of 0.05 mm², as overhangs begin too early then; with 0.01 none.
 const HELD: f32 = 0.01;
 
+/// How far inside the layer below, in lattice steps along x and y, nothing is limited: the field is of no matter there, and
+/// above a first layer without much of a slope it would be limited for ever. Nearer to the surface, the jump shows in it.
+const DEEP: usize = 8;
+
 /// Layers in which what is well inside a slice counts as well inside the solid. Above a flat bottom the field is hardly
 /// more than ½, and would limit the field of all that stands on it.
 const LIFTED: usize = 24;
@@ -127,6 +131,7 @@ impl Sweep {
                 let width = self.carried.width;
                 let below = below.chunks_exact_mut(width);
                 let rows = below.zip(limit.chunks_exact_mut(width)).zip(carried.chunks_exact_mut(width));
+                let mut deep = Vec::new();
                 for (row, ((below, limit), carried)) in rows.enumerate() {
                     let y = number * ROWS + row;
                     let field = self.fields[1].row(y as isize);
@@ -138,6 +143,9 @@ impl Sweep {
                         *carried = if limit < field { *limit } else { *field };
                     }
                     if felt {
+                        self.carried.least(y, DEEP, &mut deep);
+                        let within = limit.iter_mut().zip(&deep);
+                        within.filter(|(_, deep)| **deep >= ISO).for_each(|(limit, _)| *limit = TOP);
                         self.feel([y, layer], [below, limit], carried, collector);
                     }
                 }
