@@ -40,6 +40,23 @@ impl Layer {
             out[first..].iter_mut().zip(&lowest[..last]).for_each(|(out, value)| *out = out.min(*value));
         }
     }
+
+    /// The greatest values within reach, as [`dilate_row`] finds them.
+    pub fn dilated(&self, radius: f32) -> Self {
+        let mut all = self.clone();
+        let rows = all.values.chunks_exact_mut(self.width).enumerate();
+        rows.for_each(|(y, row)| dilate_row(self, y, radius, row));
+        all
+    }
+
+    /// The least values within reach.
+    pub fn eroded(&self, radius: f32) -> Self {
+        let mut negative = self.clone();
+        negative.values.iter_mut().for_each(|value| *value = -*value);
+        let mut all = negative.dilated(radius);
+        all.values.iter_mut().for_each(|value| *value = -*value);
+        all
+    }
 }
 
 /// Writes, for each place of a row, the greatest value of `layer` on the circle of `radius` steps, at most 1, around

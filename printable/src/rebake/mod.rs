@@ -99,8 +99,8 @@ impl Baker for Rebaker<'_> {
     ///   on that, and, for [`AddGrow`](blobtree::BrushKind::AddGrow), the way down from it.
     /// - **Cost:** that of baking, and for each dab some hundred nanoseconds for each place of the lattice in its tip.
     ///   Two bytes for each place, twelve more where something changed.
-    /// - **Source:** Reiner & Lefebvre 2016, §2.2. **Departs:** on the field, as all here; a column is kept where
-    ///   preserving by erosion would leave nothing, so that what stands above does not fall.
+    /// - **Source:** Reiner & Lefebvre 2016, §2.2. **Departs:** on the field, as all here; preserving keeps
+    ///   walls and posts where erosion would leave nothing, so that what stands above does not fall.
     fn brush(&self, rule: &SupportFree, node: &dyn Field, bake: Bake) -> Result<Bake, BakeError> {
         brush::brush(self, rule, node, bake)
     }

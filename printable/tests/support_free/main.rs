@@ -5,6 +5,7 @@ mod common;
 mod field;
 mod grow;
 mod materials;
+mod preserve;
 mod settle;
 mod store;
 mod trim;

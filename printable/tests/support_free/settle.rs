@@ -9,7 +9,7 @@ use printable::slices::{Slices, Watch};
 use printable::{Rebaker, SupportRule};
 
 /// The print check of a shape's mesh in cells as wide as layers are high; and what was taken away, mm³.
-fn settled(shape: Node, rule: SupportFree) -> (PrintCheck, f64) {
+pub fn settled(shape: Node, rule: SupportFree) -> (PrintCheck, f64) {
     let cell = CellSize::from_mm(rule.layer_height).expect("legal");
     let root: NodeRef = shape.support_free(rule.clone()).into();
     let mut store = BakeStore::new();

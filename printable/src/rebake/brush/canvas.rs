@@ -109,13 +109,24 @@ pub(super) struct Canvas {
     pub limit: Paged,
     /// What was added is made of, where that was not solid; none if nobody asks.
     pub materials: Option<VoxelMaterials>,
+    /// What was lowered since it is noted, in order; none if it is not.
+    lowered: Option<Vec<Lowered>>,
+}
+
+/// What a place was before it was lowered.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lowered {
+    pub at: [u16; 3],
+    pub value: f32,
+    limit: f32,
 }
 
 impl Canvas {
     /// One that nothing was done to; `materials`, without any said, if it is to note them.
     pub fn new(value: Volume, materials: Option<VoxelMaterials>) -> Self {
         let sides = value.sides;
-        Self { value, grown: Paged::new(sides, 0.0), limit: Paged::new(sides, TOP), materials }
+        let (grown, limit) = (Paged::new(sides, 0.0), Paged::new(sides, TOP));
+        Self { value, grown, limit, materials, lowered: None }
     }
 
     pub fn sides(&self) -> [usize; 3] {
@@ -158,13 +169,39 @@ impl Canvas {
             if to >= TOP {
                 return false;
             }
-            let before = canvas.value.value(at);
-            canvas.limit.set(at, canvas.limit.value(at).min(to));
+            let (before, limit) = (canvas.value.value(at), canvas.limit.value(at));
+            if let Some(lowered) = &mut canvas.lowered
+                && to < before.max(limit)
+            {
+                lowered.push(Lowered { at: at.map(|i| i as u16), value: before, limit });
+            }
+            canvas.limit.set(at, limit.min(to));
             if to < before {
                 canvas.value.set(at, to.max(0.0));
             }
             to < before - FELT
         })
+    }
+
+    /// Does something that only lowers, and undoes it unless it is `right` by what was lowered, in order; gives whether
+    /// it was.
+    pub fn try_to(
+        &mut self,
+        lower: impl FnOnce(&mut Self),
+        is_right: impl FnOnce(&Self, &[Lowered]) -> bool,
+    ) -> bool {
+        self.lowered = Some(Vec::new());
+        lower(self);
+        let lowered = self.lowered.take().unwrap_or_default();
+        let is_right = is_right(self, &lowered);
+        if !is_right {
+            for Lowered { at, value, limit } in lowered.into_iter().rev() {
+                let at = at.map(usize::from);
+                self.value.set(at, value);
+                self.limit.set(at, limit);
+            }
+        }
+        is_right
     }
 
     fn change(

@@ -1,25 +1,20 @@
 //! What the five brushes do with a field, dab by dab: what they do with voxels, at every level of the field at once.
 
 use super::canvas::{Canvas, Changed};
+use super::fall::Stakes;
+use super::firm::firm;
 use super::grow::along_path;
+use super::preserve::carve_and_keep;
 use super::stamp::{Block, Lattice, Shape, Stamp};
 use crate::Dab;
 use crate::rebake::anchor::lift;
 use crate::rebake::disc::{Layer, dilate_row};
 use crate::rebake::path_map::PathMap;
-use crate::rebake::strut::THINNEST;
 use crate::rebake::{REACH, TOP};
 use blobtree::{BrushKind, ISO};
 
 /// How far a layer is looked at around a block: as far as [`lift`] looks, and a step more.
 const AROUND: usize = 4;
-
-/// By how much what is kept below something leans inwards, in lattice steps for a layer: enough less than the reach
-/// that nothing of it is taken again.
-const LEAN: f32 = 0.88;
-
-/// How far from what carries it a place may be, in lattice steps, before a column is kept below it.
-const FAR: f32 = 1.6;
 
 /// By how much limits stay away from what they leave alone: more than the filter of the image takes from them.
 const BESIDE: f32 = 0.03;
@@ -64,8 +59,11 @@ impl Hand<'_> {
             }
             BrushKind::RemovePreserve => {
                 let carve = self.carve(canvas, &stamp, dab);
-                let changed = carve_and_keep(canvas, &carve);
-                topple(canvas, carve.block.low[2], changed);
+                let preserve = |canvas: &mut Canvas| {
+                    let changed = carve_and_keep(canvas, &carve);
+                    topple(canvas, carve.block.low[2], changed);
+                };
+                canvas.try_to(preserve, |canvas, lowered| Stakes::of(&carve).stand(canvas, lowered));
             }
             BrushKind::SmoothTrim => {
                 for _ in 0..(3.0 * dab.strength()).ceil() as usize {
@@ -89,12 +87,12 @@ impl Hand<'_> {
     }
 }
 
-/// What the layer below carries of a block of one layer.
-fn carried(canvas: &Canvas, block: &Block) -> Vec<f32> {
+/// What the layer below carries of a block of one layer, once it is prepared.
+fn carried(canvas: &Canvas, block: &Block, prepare: impl Fn(&mut Layer)) -> Vec<f32> {
     let [width, depth, _] = block.sides();
     let Some(below) = block.low[2].checked_sub(1) else { return vec![TOP; width * depth] };
     let mut window = canvas.window(block, below, AROUND);
-    lift(&mut window);
+    prepare(&mut window);
     inner(&window, width, depth, |layer, y, row| dilate_row(layer, y, REACH, row))
 }
 
@@ -115,7 +113,7 @@ fn inner(
 }
 
 /// One layer of a block.
-fn layer_of(block: &Block, z: usize) -> Block {
+pub(super) fn layer_of(block: &Block, z: usize) -> Block {
     let mut layer = *block;
     (layer.low[2], layer.end[2]) = (z, z + 1);
     layer
@@ -125,82 +123,18 @@ fn layer_of(block: &Block, z: usize) -> Block {
 fn add(canvas: &mut Canvas, stamp: &Stamp, material: impl Fn([usize; 3], f32) -> u8) {
     for z in stamp.block.low[2]..stamp.block.end[2] {
         let block = layer_of(&stamp.block, z);
-        let mut to = carried(canvas, &block);
+        let mut to = carried(canvas, &block, lift);
         to.iter_mut().zip(stamp.layer(z)).for_each(|(to, value)| *to = to.min(*value));
         canvas.raise(&block, &to, &material);
     }
 }
 
 /// What changed in each layer of a block, from its lowest.
-type Changes = Vec<Option<Changed>>;
+pub(super) type Changes = Vec<Option<Changed>>;
 
 fn carve_from_below(canvas: &mut Canvas, carve: &Stamp) -> Changes {
     let layers = carve.block.low[2]..carve.block.end[2];
     layers.map(|z| canvas.lower(&layer_of(&carve.block, z), carve.layer(z))).collect()
-}
-
-/// Carves, but for what carries the solid above: from above, each layer keeps at least the one above, eroded; and
-/// where that leaves nothing, a column.
-fn carve_and_keep(canvas: &mut Canvas, carve: &Stamp) -> Changes {
-    let mut changes: Changes = Vec::new();
-    for z in (carve.block.low[2]..carve.block.end[2]).rev() {
-        let block = layer_of(&carve.block, z);
-        let [width, depth, _] = block.sides();
-        let mut to = carve.layer(z).to_vec();
-        if z + 1 < canvas.sides()[2] {
-            let mut negative = canvas.window(&block, z + 1, AROUND);
-            negative.values.iter_mut().for_each(|value| *value = -*value);
-            let needed = inner(&negative, width, depth, |layer, y, row| dilate_row(layer, y, LEAN, row));
-            to.iter_mut().zip(needed).for_each(|(to, needed)| *to = to.max(-needed));
-            keep_columns(canvas, &block, &mut to);
-        }
-        changes.push(canvas.lower(&block, &to));
-    }
-    changes.reverse();
-    changes
-}
-
-/// Raises a limit where the layer above would have nothing within reach.
-fn keep_columns(canvas: &Canvas, block: &Block, to: &mut [f32]) {
-    let [width, depth, _] = block.sides();
-    let above = canvas.window(block, block.low[2] + 1, 0);
-    let own = canvas.window(block, block.low[2], AROUND);
-    let solid = |x: isize, y: isize| {
-        let inside = (0..width as isize).contains(&x) && (0..depth as isize).contains(&y);
-        let value = own.row(y + AROUND as isize)[(x + AROUND as isize) as usize];
-        value >= ISO && (!inside || to[x as usize + width * y as usize] >= ISO)
-    };
-    let reach = FAR.ceil() as isize;
-    let is_carried = |x: isize, y: isize| {
-        (-reach..=reach)
-            .any(|dy| (-reach..=reach).any(|dx| (dx as f32).hypot(dy as f32) <= FAR && solid(x + dx, y + dy)))
-    };
-    // Groups of hanging places, each with the sum of its places.
-    let mut groups: Vec<([f32; 2], f32, [f32; 2])> = Vec::new();
-    for (n, value) in above.values.iter().enumerate() {
-        let (x, y) = (n % width, n / width);
-        if *value < ISO || is_carried(x as isize, y as isize) {
-            continue;
-        }
-        let at = [x as f32, y as f32];
-        let near = |(first, ..): &&mut ([f32; 2], f32, [f32; 2])| {
-            (first[0] - at[0]).hypot(first[1] - at[1]) < 3.0 * FAR
-        };
-        match groups.iter_mut().rev().find(near) {
-            Some((_, count, sum)) => {
-                *count += 1.0;
-                *sum = [sum[0] + at[0], sum[1] + at[1]];
-            }
-            None => groups.push((at, 1.0, at)),
-        }
-    }
-    for (_, count, sum) in groups {
-        let middle = sum.map(|sum| sum / count);
-        for (n, to) in to.iter_mut().enumerate() {
-            let distance = ((n % width) as f32 - middle[0]).hypot((n / width) as f32 - middle[1]);
-            *to = to.max((ISO + 0.125 * (THINNEST - distance)).min(TOP));
-        }
-    }
 }
 
 /// Takes away what lost what carried it, layer by layer. `changes` are those from layer `low` on.
@@ -237,7 +171,11 @@ fn drop_unsupported(canvas: &mut Canvas, below: &Changed, z: usize) -> Option<Ch
             }
         }
     });
-    let mut to = carried(canvas, &block);
+    let inside = |layer: &mut Layer| {
+        firm(layer);
+        lift(layer);
+    };
+    let mut to = carried(canvas, &block, inside);
     for (n, to) in to.iter_mut().enumerate() {
         if !doubtful[n] {
             // What lost nothing stays; the limit beside it goes on smoothly.
@@ -274,7 +212,7 @@ fn smooth(canvas: &mut Canvas, stamp: &Stamp, material: u8) {
     let mut changes: Changes = Vec::new();
     for (z, target) in layers.zip(&targets) {
         let block = layer_of(&stamp.block, z);
-        let mut up = carried(canvas, &block);
+        let mut up = carried(canvas, &block, lift);
         let mut down = target.clone();
         for (n, tip) in stamp.layer(z).iter().enumerate() {
             let beside = if *tip > ISO { 0.0 } else { BESIDE };

@@ -7,7 +7,10 @@
 
 mod canvas;
 mod dabs;
+mod fall;
+mod firm;
 mod grow;
+mod preserve;
 mod stamp;
 
 use super::bricks::Collector;
