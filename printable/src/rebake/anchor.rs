@@ -15,7 +15,7 @@ use rayon::prelude::*;
 const RAMP: f32 = 24.0;
 
 /// How far inside a layer, along x or y, is well inside, in lattice steps.
-const DEEP: isize = 3;
+const DEEP: usize = 3;
 
 /// Halvings of a step in which an outline is looked for.
 const HALVINGS: usize = 4;
@@ -53,21 +53,12 @@ pub(super) fn anchor(region: &Region, first: &Layer, child: &dyn Field) -> Layer
 
 /// Sets to [`TOP`] what is farther inside a layer, along x or y, than [`DEEP`].
 pub(super) fn lift(layer: &mut Layer) {
-    let (width, reach) = (layer.width, DEEP);
-    let outside: Vec<bool> = layer.values.iter().map(|value| *value < ISO).collect();
-    let depth = (outside.len() / width) as isize;
-    let along_x = |row: &[bool], x: usize| {
-        row[x.saturating_sub(reach as usize)..(x + reach as usize + 1).min(width)].iter().any(|out| *out)
-    };
-    let near: Vec<bool> =
-        outside.chunks_exact(width).flat_map(|row| (0..width).map(move |x| along_x(row, x))).collect();
-    layer.values.par_chunks_mut(width).enumerate().for_each(|(y, values)| {
-        let rows = (y as isize - reach).max(0)..(y as isize + reach + 1).min(depth);
-        for (x, value) in values.iter_mut().enumerate() {
-            if !rows.clone().any(|row| near[row as usize * width + x]) {
-                *value = TOP;
-            }
-        }
+    let before = layer.clone();
+    let rows = layer.values.par_chunks_mut(before.width).enumerate();
+    rows.for_each_init(Vec::new, |least, (y, values)| {
+        before.least(y, DEEP, least);
+        let inside = values.iter_mut().zip(&*least).filter(|(_, least)| **least >= ISO);
+        inside.for_each(|(value, _)| *value = TOP);
     });
 }
 

@@ -1,7 +1,12 @@
 //! Closest supporting paths: from every place the way down that comes to matter or to the bed soonest.
 
+use super::disc::Layer;
 use super::volume::Volume;
 use blobtree::ISO;
+use rayon::prelude::*;
+
+/// Places that one thread is done with sooner than another one is found.
+const ALONE: usize = 1 << 13;
 
 /// Layers from every place down to what carries.
 ///
@@ -15,24 +20,29 @@ pub(super) struct PathMap {
 }
 
 impl PathMap {
-    /// Cost: a few operations for each place.
+    /// - **Promises:** the same for any number of threads.
+    /// - **Cost:** a few operations for each place.
     pub fn new(volume: &Volume) -> Self {
-        let sides = volume.sides;
-        let mut map = Self { sides, costs: vec![0; sides.iter().product()] };
-        for z in 1..sides[2] {
-            for y in 0..sides[1] {
-                for x in 0..sides[0] {
-                    let cost = if volume.value([x, y, z]) >= ISO {
-                        0
-                    } else {
-                        let [nx, ny] = map.next([x, y, z]);
-                        map.cost([nx, ny, z - 1]).saturating_add(1)
-                    };
-                    map.costs[x + sides[0] * (y + sides[1] * z)] = cost;
+        let [width, depth, layers] = volume.sides;
+        let mut costs = vec![0u16; width * depth * layers];
+        let mut solid = Layer::new(width, depth, 0.0);
+        for z in 1..layers {
+            volume.copy_layer(z, &mut solid);
+            let (below, own) = costs.split_at_mut(z * width * depth);
+            let below = &below[(z - 1) * width * depth..];
+            let rows = own[..width * depth].par_chunks_mut(width).zip(solid.values.par_chunks(width));
+            rows.enumerate().with_min_len(ALONE / width + 1).for_each(|(y, (own, solid))| {
+                let row = |y: usize| &below[y * width..(y + 1) * width];
+                let (before, here, after) = (row(y.saturating_sub(1)), row(y), row((y + 1).min(depth - 1)));
+                for (x, (own, solid)) in own.iter_mut().zip(solid).enumerate() {
+                    if *solid < ISO {
+                        let along = here[x].min(here[x.saturating_sub(1)]).min(here[(x + 1).min(width - 1)]);
+                        *own = along.min(before[x]).min(after[x]).saturating_add(1);
+                    }
                 }
-            }
+            });
         }
-        map
+        Self { sides: volume.sides, costs }
     }
 
     /// Layers from this place down to matter or to the bed.

@@ -51,6 +51,13 @@ impl Volume {
         f32::from(self.values[x + self.sides[0] * (y + self.sides[1] * z)]) / STEPS
     }
 
+    /// Copies the values from a place on along x.
+    pub fn copy_row(&self, [x, y, z]: [usize; 3], to: &mut [f32]) {
+        let start = x + self.sides[0] * (y + self.sides[1] * z);
+        let own = &self.values[start..start + to.len()];
+        to.iter_mut().zip(own).for_each(|(to, value)| *to = f32::from(*value) / STEPS);
+    }
+
     /// Sets the value at a place.
     pub fn set(&mut self, [x, y, z]: [usize; 3], value: f32) {
         self.values[x + self.sides[0] * (y + self.sides[1] * z)] = (value * STEPS).round() as u16;

@@ -294,3 +294,24 @@ fn replaying_stops_when_asked_to() {
     let result = Rebaker::with_cancel(&cancel).brush(&rule, &tree, Bake::default());
     assert_eq!(result, Err(BakeError::Cancelled));
 }
+
+#[test]
+fn one_thread_and_many_replay_the_same_bytes() {
+    let strokes = KINDS.map(|brush| {
+        let places = (0..8).map(|n| [4. + 0.5 * n as f32, 0.3 * n as f32, 9. + 0.4 * n as f32]);
+        Arc::new(BrushStroke::new(brush, 2.0, places))
+    });
+    let rule = SupportFree { strokes: strokes.to_vec(), ..trimming(45.0, 0.25) };
+    let root: NodeRef = block().support_free(rule).into();
+    let bake = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let mut store = BakeStore::new();
+        pool.install(|| store.bake(&root, &Rebaker::new())).expect("it can be baked");
+        store.of(&root).expect("it is baked").clone()
+    };
+    let one = bake(1);
+    assert!(one.brushed.grown.is_some() && one.brushed.limit.is_some());
+    for threads in [2, 5] {
+        assert!(bake(threads) == one, "{threads} threads differ");
+    }
+}

@@ -227,12 +227,16 @@ impl Canvas {
         let [width, depth, _] = block.sides();
         let mut window = Layer::new(width + 2 * margin, depth + 2 * margin, 0.0);
         let [nx, ny, _] = self.sides();
-        let clamped = |low: usize, i: usize, most: usize| (low + i).saturating_sub(margin).min(most - 1);
         for (y, row) in window.values.chunks_exact_mut(width + 2 * margin).enumerate() {
-            let y = clamped(block.low[1], y, ny);
-            for (x, value) in row.iter_mut().enumerate() {
-                *value = self.value.value([clamped(block.low[0], x, nx), y, layer]);
-            }
+            let y = (block.low[1] + y).saturating_sub(margin).min(ny - 1);
+            // Those beyond the first place, those in the region, and those beyond the last.
+            let before = margin.saturating_sub(block.low[0]);
+            let first = (block.low[0] + before - margin).min(nx - 1);
+            let inside = (row.len() - before).min(nx - first);
+            self.value.copy_row([first, y, layer], &mut row[before..before + inside]);
+            let (low, high) = (row[before], row[before + inside - 1]);
+            row[..before].fill(low);
+            row[before + inside..].fill(high);
         }
         window
     }

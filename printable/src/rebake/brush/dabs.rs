@@ -34,9 +34,8 @@ pub(super) struct Hand<'a> {
 }
 
 impl Hand<'_> {
-    /// Puts the brush down once.
-    pub fn dab(&self, canvas: &mut Canvas, dab: &Dab) {
-        let Some(stamp) = self.lattice.stamp(self.shape, dab) else { return };
+    /// Puts the brush down once; `stamp` is its tip there.
+    pub fn dab(&self, canvas: &mut Canvas, dab: &Dab, stamp: Stamp) {
         let [material, grown] = self.materials;
         match self.kind {
             BrushKind::AddTrim => {

@@ -19,6 +19,7 @@ use super::path_map::PathMap;
 use super::region::Region;
 use super::volume::Volume;
 use super::{Rebaker, TOP, grow::sample};
+use crate::Dab;
 use crate::brush::dabs_of;
 use blobtree::{
     Aabb, Bake, BakeError, Beyond, BrushKind, BrushStroke, Brushed, Field, SupportFree, VoxelBrick,
@@ -27,8 +28,12 @@ use blobtree::{
 use canvas::{Canvas, FELT, Paged};
 use dabs::Hand;
 use glam::DVec3;
-use stamp::{Lattice, Shape};
+use rayon::prelude::*;
+use stamp::{Lattice, Shape, Stamp};
 use std::sync::Arc;
+
+/// Places of stamps that are made at once.
+const AHEAD: usize = 1 << 22;
 
 /// Replays all strokes of a rule on `node`, what was baked before.
 ///
@@ -55,9 +60,16 @@ pub(super) fn brush(
         let materials = [stroke.material, stroke.grown_material];
         let hand =
             Hand { kind: stroke.brush, shape: &shape, lattice: &lattice, paths: paths.as_ref(), materials };
-        for dab in &dabs {
-            rebaker.go_on()?;
-            hand.dab(&mut canvas, dab);
+        let places =
+            |dab: &Dab| lattice.block_of(&shape, dab).map_or(0, |block| block.sides().iter().product());
+        for dabs in groups(&dabs, places) {
+            let stamps: Vec<Option<Stamp>> = dabs.par_iter().map(|dab| lattice.stamp(&shape, dab)).collect();
+            for (dab, stamp) in dabs.iter().zip(stamps) {
+                rebaker.go_on()?;
+                if let Some(stamp) = stamp {
+                    hand.dab(&mut canvas, dab, stamp);
+                }
+            }
         }
     }
     let ends = [[region.low[0], region.low[1], -2], region.high()];
@@ -76,6 +88,22 @@ pub(super) fn brush(
         materials: canvas.materials.filter(|materials| !materials.is_plain()).map(Arc::new),
     };
     Ok(bake)
+}
+
+/// Dabs that follow each other, in groups whose stamps have [`AHEAD`] places together, or of one dab.
+fn groups(dabs: &[Dab], places: impl Fn(&Dab) -> usize) -> Vec<&[Dab]> {
+    let mut groups = Vec::new();
+    let (mut start, mut all) = (0, 0);
+    for (n, dab) in dabs.iter().enumerate() {
+        let own = places(dab);
+        if n > start && all + own > AHEAD {
+            groups.push(&dabs[start..n]);
+            (start, all) = (n, 0);
+        }
+        all += own;
+    }
+    groups.push(&dabs[start..]);
+    groups
 }
 
 /// Whether a stroke may add anything of another material than 0.

@@ -127,10 +127,9 @@ impl Lattice {
         (0..3).all(|a| block.low[a] < block.end[a]).then_some(block)
     }
 
-    /// The dab of a tip; none where it does not reach the region.
-    pub fn stamp(&self, shape: &Shape, dab: &Dab) -> Option<Stamp> {
+    /// The places of a dab of a tip; none where it does not reach the region.
+    pub fn block_of(&self, shape: &Shape, dab: &Dab) -> Option<Block> {
         let (center, radius) = (dab.center(), dab.radius());
-        let falloff = GROWN_FALLOFF.min(radius);
         let bounds = match shape {
             Shape::Solid(tree) => {
                 let support = tree.support();
@@ -139,9 +138,15 @@ impl Lattice {
                 }
                 Aabb { min: center + support.min * radius, max: center + support.max * radius }
             }
-            _ => Aabb::around(center, Vec3::splat(radius + falloff)),
+            _ => Aabb::around(center, Vec3::splat(radius + falloff(dab))),
         };
-        let block = self.block(&bounds)?;
+        self.block(&bounds)
+    }
+
+    /// The dab of a tip; none where it does not reach the region.
+    pub fn stamp(&self, shape: &Shape, dab: &Dab) -> Option<Stamp> {
+        let (center, radius, falloff) = (dab.center(), dab.radius(), falloff(dab));
+        let block = self.block_of(shape, dab)?;
         let mut values = Vec::with_capacity(block.sides().iter().product());
         let rows =
             (block.low[2]..block.end[2]).flat_map(|z| (block.low[1]..block.end[1]).map(move |y| [y, z]));
@@ -165,6 +170,11 @@ impl Lattice {
         }
         Some(Stamp { block, values })
     }
+}
+
+/// How far the field of a dab of a plain shape reaches beyond its surface, mm.
+fn falloff(dab: &Dab) -> f32 {
+    GROWN_FALLOFF.min(dab.radius())
 }
 
 impl Stamp {
