@@ -19,7 +19,7 @@ pub(super) const TAPER: f32 = 0.04;
 pub(super) const SMOOTHED: usize = 4;
 
 /// Layers by which a strut goes on into what it stands on.
-pub(super) const ROOT: usize = 6;
+const ROOT: usize = 6;
 
 /// A column: its middle and radius in each layer from the highest down, in lattice steps.
 #[derive(Debug)]

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, Changed};
 use super::fall::Stakes;
 use super::firm::firm;
-use super::grow::along_path;
+use super::grow::{along_path, with_foot};
 use super::preserve::carve_and_keep;
 use super::stamp::{Block, Lattice, Shape, Stamp};
 use crate::Dab;
@@ -49,7 +49,8 @@ impl Hand<'_> {
                     .paths
                     .map(|paths| along_path(canvas, self.lattice, self.shape, dab, paths, tip.clone()));
                 let of_tip = |at, to: f32| if tip.value(at) >= to.min(ISO) { material } else { grown };
-                add(canvas, all.as_ref().unwrap_or(&tip), of_tip);
+                let all = with_foot(canvas, all.unwrap_or_else(|| tip.clone()));
+                add(canvas, &all, of_tip);
             }
             BrushKind::RemoveTrim => {
                 let carve = self.carve(canvas, &stamp, dab);

@@ -15,7 +15,7 @@ use blobtree::ISO;
 
 /// By how much what is kept below something leans inwards, in lattice steps for a layer: enough less than the reach
 /// that nothing of it is taken again.
-const LEAN: f32 = 0.88;
+pub(super) const LEAN: f32 = 0.88;
 
 /// Width, in lattice steps, of cracks that are not left between what is kept and what was not carved.
 const CRACK: f32 = 1.0;
