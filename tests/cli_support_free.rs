@@ -184,6 +184,56 @@ fn what_a_stroke_added_is_of_its_material_in_a_3mf_file() {
     assert!(count > 500, "{count}");
 }
 
+/// A box with strokes over it.
+fn stroked(strokes: &str) -> String {
+    format!(
+        r#"{{"format": "trullo", "version": 1, "root": {{"type": "support_free", "strokes": [{strokes}],
+            "child": {{"type": "box", "center": [0, 0, 6], "size": [12, 10, 12]}}}}}}"#
+    )
+}
+
+#[test]
+fn strokes_of_nonsense_are_refused_in_words() {
+    let many = format!("{}[0, 0, 11]", "[0, 0, 11],".repeat(60_000));
+    let dabs = format!(r#"{{"brush": "add_trim", "radius": 2, "places": [{many}]}}"#);
+    for (strokes, told) in [
+        (r#"{"brush": "add_trim", "radius": NaN, "places": [[0, 0, 1]]}"#, "not JSON"),
+        (r#"{"brush": "add_trim", "radius": 1, "places": [[0, 1e999, 1]]}"#, "number out of range"),
+        (r#"{"brush": "add_trim", "radius": 1, "places": [[1e30, 0, 1]]}"#, "not three coordinates"),
+        (r#"{"brush": "add_trim", "radius": 1e9, "places": [[0, 0, 1]]}"#, "not 0.05 to 100 mm"),
+        (r#"{"brush": "add_trim", "radius": 1, "places": []}"#, "not a list of 1 to"),
+        (
+            r#"{"brush": "remove_trim", "radius": 0.05, "spacing": 0.05, "places": [[-90000, 0, 5], [90000, 0, 5]]}"#,
+            "not at most 100000",
+        ),
+        (&format!("{dabs}, {dabs}"), "not at most 100000"),
+    ] {
+        let folder = Folder::with_scene("s.trullo", &stroked(strokes));
+        let out = folder.trullo(&["support-free", "s.trullo", "-o", "o.trullo"]);
+        assert_eq!(out.status.code(), Some(2), "{told}: {out:?}");
+        let words = String::from_utf8_lossy(&out.stderr);
+        assert!(words.contains(told), "{told}: {words}");
+    }
+}
+
+#[test]
+fn strokes_that_hardly_touch_anything_are_ordinary() {
+    for brush in ["add_trim", "remove_trim", "remove_preserve", "add_grow", "smooth_trim"] {
+        let stroke = |rest: &str| format!(r#"{{"brush": "{brush}", {rest}}}"#);
+        let strokes = [
+            stroke(r#""radius": 2, "spacing": 0.05, "places": [[0, 0, 11], [0, 0, 11], [0, 0, 11]]"#),
+            stroke(r#""radius": 0.05, "places": [[0, 0, 12], [6, 5, 12]]"#),
+            stroke(r#""radius": 2, "strength": 0, "places": [[0, 0, 11]]"#),
+            stroke(r#""radius": 3, "places": [[0, 0, -1], [0, 0, -50]]"#),
+            stroke(r#""radius": 2, "tip": {"type": "union", "children": []}, "places": [[0, 0, 11]]"#),
+            stroke(r#""radius": 20, "light_radius": 0.1, "pressures": [0], "places": [[0, 0, 12]]"#),
+        ];
+        let folder = Folder::with_scene("s.trullo", &stroked(&strokes.join(", ")));
+        let out = folder.trullo(&["support-free", "s.trullo", "-o", "o.trullo"]);
+        assert_eq!(out.status.code(), Some(0), "{brush}: {out:?}");
+    }
+}
+
 #[test]
 fn a_3mf_file_of_one_material_does_not_speak_of_materials() {
     let folder = Folder::with_scene("t.trullo", &a_letter_t("trim"));
