@@ -4,11 +4,11 @@ use blobtree::Aabb;
 use glam::{Vec2, Vec3};
 use sketch::suggest::{Projection, View};
 
-/// The angle between the top and the bottom of the view, degrees. Small, so that sketches on a plane parallel to the
+/// The angle between the top and the bottom of the view, or between its sides if it is narrower, degrees. Small, so that sketches on a plane parallel to the
 /// screen look as they were drawn.
-const HEIGHT_DEGREES: f32 = 24.0;
+const DEGREES: f32 = 24.0;
 
-/// How far a drag over the whole height of the view turns the model, degrees.
+/// How far a drag over the whole shorter side of the view turns the model, degrees.
 const TURN: f32 = 180.0;
 
 /// Distances between which the camera stays from its target, mm.
@@ -104,7 +104,8 @@ impl Camera {
         let back = Vec3::new(sa * ce, -ca * ce, se);
         let up = Vec3::new(-sa * se, ca * se, ce);
         let projection = if self.perspective {
-            Projection::Perspective { height_degrees: HEIGHT_DEGREES }
+            let height_degrees = 2.0 * (narrowest() * screen.y / shorter(screen)).atan().to_degrees();
+            Projection::Perspective { height_degrees }
         } else {
             Projection::Orthographic { mm_per_px: self.mm_per_px(screen) }
         };
@@ -113,12 +114,12 @@ impl Camera {
 
     /// The size of a pixel at the target, mm.
     pub fn mm_per_px(&self, screen: Vec2) -> f32 {
-        2.0 * self.distance * (0.5 * HEIGHT_DEGREES).to_radians().tan() / screen.y.max(1.0)
+        2.0 * self.distance * narrowest() / shorter(screen)
     }
 
     /// Turns the model with a drag over some pixels, as if it were held.
     pub fn orbit(&mut self, by_px: Vec2, screen: Vec2) {
-        let degrees = by_px * TURN / screen.y.max(1.0);
+        let degrees = by_px * TURN / shorter(screen);
         self.azimuth = (self.azimuth - degrees.x + 180.0).rem_euclid(360.0) - 180.0;
         self.elevation = (self.elevation + degrees.y).clamp(-90.0, 90.0);
     }
@@ -153,14 +154,25 @@ impl Camera {
         let what = if what.is_empty() || !what.size().is_finite() { EMPTY } else { what };
         let radius = (0.5 * what.size().length()).max(1.0);
         self.target = 0.5 * (what.min + what.max);
-        let away = radius / (0.5 * HEIGHT_DEGREES).to_radians().sin();
+        let away = radius / (0.5 * DEGREES).to_radians().sin();
         self.distance = (1.05 * away).clamp(DISTANCES[0], DISTANCES[1]);
     }
+}
+
+/// The tangent of half the angle of the view.
+fn narrowest() -> f32 {
+    (0.5 * DEGREES).to_radians().tan()
+}
+
+/// The shorter side of a screen.
+fn shorter(screen: Vec2) -> f32 {
+    screen.min_element().max(1.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec2Swizzles as _;
 
     const SCREEN: Vec2 = Vec2::new(800.0, 600.0);
 
@@ -204,16 +216,13 @@ mod tests {
     #[test]
     fn all_of_a_box_shows_from_every_side() {
         let shown = Aabb { min: Vec3::new(-5.0, 10.0, 0.0), max: Vec3::new(60.0, 20.0, 90.0) };
-        for side in Side::ALL {
+        for (side, screen) in Side::ALL.into_iter().flat_map(|side| [(side, SCREEN), (side, SCREEN.yx())]) {
             let mut camera = Camera::default();
             camera.look_from(side);
             camera.show(shown);
-            for corner in 0..8 {
-                let pick =
-                    |axis: usize| if corner >> axis & 1 == 0 { shown.min[axis] } else { shown.max[axis] };
-                let px = camera.view(SCREEN).screen_from_model(Vec3::new(pick(0), pick(1), pick(2)));
-                let px = px.expect("before the eye");
-                assert!(px.cmpge(Vec2::ZERO).all() && px.cmple(SCREEN).all(), "{side:?}: {px}");
+            for corner in shown.corners() {
+                let px = camera.view(screen).screen_from_model(corner).expect("before the eye");
+                assert!(px.cmpge(Vec2::ZERO).all() && px.cmple(screen).all(), "{side:?}, {screen}: {px}");
             }
         }
     }

@@ -1,10 +1,10 @@
 //! All keys, strokes and touches, to be read.
 
 use crate::keys::BINDINGS;
-use egui::{Grid, Key, KeyboardShortcut, ScrollArea, Ui};
+use egui::{Grid, Key, KeyboardShortcut, Ui};
 
-/// Room around the lines in the window, points.
-const AROUND: f32 = 150.0;
+/// The least width of a window with two entries on each line, points.
+const TWO: f32 = 760.0;
 
 /// Strokes that are commands.
 const STROKES: [(&str, &str); 6] = [
@@ -36,8 +36,7 @@ const TOUCHES: [(&str, &str); 14] = [
 
 /// Shows them; whether they are to stay.
 pub fn show(ui: &mut Ui) -> bool {
-    let height = (ui.ctx().content_rect().height() - AROUND).max(100.0);
-    ScrollArea::vertical().max_height(height).show(ui, |ui| {
+    crate::dialog::scrolled(ui, |ui| {
         table(ui, "Strokes that are commands", &STROKES.map(|(what, does)| (what.to_owned(), does)));
         table(ui, "In the view", &TOUCHES.map(|(what, does)| (what.to_owned(), does)));
         let keys: Vec<_> =
@@ -48,11 +47,11 @@ pub fn show(ui: &mut Ui) -> bool {
     !ui.button("Close").clicked()
 }
 
-/// Two entries on each line.
+/// Two entries on each line, where there is room.
 fn table(ui: &mut Ui, title: &str, entries: &[(String, &str)]) {
     ui.strong(title);
     Grid::new(title).num_columns(4).striped(true).show(ui, |ui| {
-        for pair in entries.chunks(2) {
+        for pair in entries.chunks(if ui.ctx().content_rect().width() < TWO { 1 } else { 2 }) {
             for (what, does) in pair {
                 ui.label(what);
                 ui.label(*does);

@@ -5,6 +5,9 @@ use crate::modeler::Modeler;
 use blobtree::{NodeRef, Operator, Shape};
 use egui::{Align2, Area, Frame, Id, Order, Rect, RichText, Ui, vec2};
 
+/// The width of a card, points.
+const WIDTH: f32 = 320.0;
+
 /// What the lessons teach, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lesson {
@@ -37,7 +40,7 @@ impl Lesson {
     fn text(self) -> &'static str {
         match self {
             Self::Draw => "Draw a circle, or any closed outline, in the middle of the page.",
-            Self::Choose => "Beside your outline stands what it may become. Tap Inflate.",
+            Self::Choose => "There are pictures of what your outline may become. Tap Inflate.",
             Self::Blend => "Draw a smaller circle across the edge of your shape, and tap Grow.",
             Self::Cut => "Draw a small circle inside your shape, and tap Cut a hole.",
             Self::Done => {
@@ -106,7 +109,7 @@ pub fn show(modeler: &mut Modeler, ui: &Ui, view: Rect) {
     let area = Area::new(Id::unique("lesson")).order(Order::Middle).pivot(pivot).fixed_pos(corner);
     area.show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-            ui.set_max_width(320.0);
+            ui.set_max_width(WIDTH.min(view.width() - 60.0));
             match modeler.lesson {
                 Some(lesson) => card(modeler, ui, lesson),
                 None => offer(modeler, ui),

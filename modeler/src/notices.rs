@@ -8,6 +8,9 @@ const STAYS: f64 = 5.0;
 /// The width at which a text goes on in a new line, points.
 const WIDEST: f32 = 560.0;
 
+/// Around a text, points.
+const MARGINS: f32 = 40.0;
+
 /// Most lines at a time.
 const MOST: usize = 4;
 
@@ -65,7 +68,7 @@ impl Notices {
                     if line.is_warning { Color32::from_rgb(150, 50, 40) } else { Color32::from_gray(50) };
                 let frame = Frame::new().fill(fill).corner_radius(6.0).inner_margin(8.0).outer_margin(3.0);
                 frame.show(ui, |ui| {
-                    ui.set_max_width(WIDEST);
+                    ui.set_max_width(WIDEST.min(ui.ctx().content_rect().width() - MARGINS));
                     ui.add(Label::new(RichText::new(&line.text).color(Color32::WHITE)).wrap());
                     if line.is_warning && ui.button("I see").clicked() {
                         read = Some(i);

@@ -26,7 +26,7 @@ use std::time::Duration;
 const SIZE: [f32; 2] = [1280.0, 800.0];
 
 /// The least size in which everything can be reached, points.
-const LEAST: [f32; 2] = [720.0, 480.0];
+const LEAST: [f32; 2] = [480.0, 360.0];
 
 /// The largest buffer that is asked of a graphics card, bytes: a surface of six million triangles.
 const LARGEST_BUFFER: u64 = 1 << 30;

@@ -24,6 +24,9 @@ use std::time::{Duration, Instant};
 /// Points, and pixels.
 const SIZE: egui::Vec2 = vec2(1000.0, 640.0);
 
+/// As small as a window may be: what is shown of a small screen whose things are twice as large.
+const SMALL: egui::Vec2 = vec2(500.0, 400.0);
+
 /// Pixels that differ by more than this in a channel are different.
 const FAINT: u8 = 24;
 
@@ -65,9 +68,9 @@ impl TestRenderer for Textures {
     }
 }
 
-fn screen(state: &RenderState, theme: Theme) -> Screen {
+fn screen(state: &RenderState, size: egui::Vec2, theme: Theme) -> Screen {
     let modeler = Modeler::new(Box::new(Files::default()), None, Arc::new(|| ())).expect("threads");
-    let builder = Harness::builder().with_size(SIZE).with_theme(theme).renderer(Textures(state.clone()));
+    let builder = Harness::builder().with_size(size).with_theme(theme).renderer(Textures(state.clone()));
     let both = (modeler, Card::new(state.clone()));
     let mut screen =
         builder.build_ui_state(|ui, (modeler, card): &mut (Modeler, Card)| modeler.ui(ui, card), both);
@@ -86,10 +89,16 @@ fn settle(screen: &mut Screen) {
     screen.run_steps(2);
 }
 
+/// Width and height of the screen, pixels.
+fn size_of(screen: &Screen) -> [u32; 2] {
+    let size = screen.ctx.viewport_rect().size();
+    [size.x as u32, size.y as u32]
+}
+
 /// The pixels of the screen, red, green, blue and opacity.
 fn pixels(screen: &Screen, state: &RenderState) -> Vec<u8> {
     let (device, queue, mut renderer) = (&state.device, &state.queue, state.renderer.write());
-    let [width, height] = [SIZE.x as u32, SIZE.y as u32];
+    let [width, height] = size_of(screen);
     let area = ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: 1.0 };
     let shapes = screen.ctx.tessellate(screen.output().shapes.clone(), 1.0);
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -152,11 +161,11 @@ fn compare(screen: &Screen, state: &RenderState, name: &str) -> Option<String> {
     let new = folder.join(format!("{name}.new.png"));
     let now = pixels(screen, state);
     if std::env::var_os("TRULLO_UPDATE_SNAPSHOTS").is_some() {
-        write(&file, &now);
+        write(&file, &now, size_of(screen));
         return None;
     }
     let Some(before) = read(&file).filter(|before| before.len() == now.len()) else {
-        write(&new, &now);
+        write(&new, &now, size_of(screen));
         return Some(format!("{name}: there is no picture of this size"));
     };
     let is_other = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > FAINT);
@@ -165,7 +174,7 @@ fn compare(screen: &Screen, state: &RenderState, name: &str) -> Option<String> {
     if share <= TOLERATED {
         return None;
     }
-    write(&new, &now);
+    write(&new, &now, size_of(screen));
     Some(format!("{name}: {:.1} % of the pixels are different, see {}", 100.0 * share, new.display()))
 }
 
@@ -178,9 +187,9 @@ fn read(file: &std::path::Path) -> Option<Vec<u8>> {
     Some(pixels)
 }
 
-fn write(file: &std::path::Path, pixels: &[u8]) {
+fn write(file: &std::path::Path, pixels: &[u8], [width, height]: [u32; 2]) {
     let out = std::io::BufWriter::new(std::fs::File::create(file).expect("the folder is there"));
-    let mut encoder = png::Encoder::new(out, SIZE.x as u32, SIZE.y as u32);
+    let mut encoder = png::Encoder::new(out, width, height);
     // Opacity says nothing.
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
@@ -242,34 +251,38 @@ fn drag_to_rest(screen: &mut Screen) {
 }
 
 /// What is on a screen: its name, and how to get there from the empty page.
-const SCREENS: [(&str, Prepare); 8] = [
-    ("empty", |_| ()),
-    ("sketch", draw_circle),
-    ("parts", |screen| {
+const SCREENS: [(&str, egui::Vec2, Prepare); 9] = [
+    ("empty", SIZE, |_| ()),
+    ("sketch", SIZE, draw_circle),
+    ("small", SMALL, |screen| {
+        open(screen, 0);
+        draw_circle(screen);
+    }),
+    ("parts", SIZE, |screen| {
         open(screen, 0);
         screen.state_mut().0.select_all([NodePath(vec![0, 0, 2]), NodePath(vec![0, 1, 0])]);
         screen.state_mut().0.settings.tool = Tool::Select;
         settle(screen);
     }),
-    ("looks", |screen| {
+    ("looks", SIZE, |screen| {
         open(screen, 4);
         screen.state_mut().0.settings.shows_overhang = true;
         screen.state_mut().0.settings.look = Look::Shaded;
         screen.state_mut().0.select(Some(NodePath(vec![1])));
         settle(screen);
     }),
-    ("dragged", drag_to_rest),
-    ("left-handed", |screen| {
+    ("dragged", SIZE, drag_to_rest),
+    ("left-handed", SIZE, |screen| {
         screen.state_mut().0.settings.left_handed = true;
         settle(screen);
         draw_circle(screen);
     }),
-    ("lens", |screen| {
+    ("lens", SIZE, |screen| {
         open(screen, 7);
         screen.state_mut().0.toggle_lens();
         settle(screen);
     }),
-    ("help", |screen| {
+    ("help", SIZE, |screen| {
         screen.state_mut().0.dialog = Some(Dialog::Help);
         // The window takes some frames to find its size.
         screen.run_steps(10);
@@ -283,9 +296,9 @@ fn the_main_screens_look_as_they_did_in_light_and_dark() {
         return;
     };
     let mut wrong = Vec::new();
-    for (name, prepare) in SCREENS {
+    for (name, size, prepare) in SCREENS {
         for (theme, tone) in [(Theme::Light, "light"), (Theme::Dark, "dark")] {
-            let mut screen = screen(&state, theme);
+            let mut screen = screen(&state, size, theme);
             prepare(&mut screen);
             wrong.extend(compare(&screen, &state, &format!("{name}-{tone}")));
         }

@@ -7,6 +7,12 @@ use egui::{Checkbox, DragValue, Grid, Key, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// The width of the field for a name, points.
+const WIDTH: f32 = 460.0;
+
+/// What is around it in a narrow window, points.
+const MARGINS: f32 = 60.0;
+
 /// The formats of meshes: their endings, and what they are good for.
 const FORMATS: [(&str, &str); 4] = [
     ("3mf", "For slicers; it has a unit, and carries the scene along"),
@@ -42,7 +48,12 @@ pub fn show(
         Purpose::Export => ("The mesh's file", "Export"),
     };
     let label = ui.label(what);
-    let field = ui.add(egui::TextEdit::singleline(&mut text).desired_width(460.0)).labelled_by(label.id);
+    let field = ui
+        .add(
+            egui::TextEdit::singleline(&mut text)
+                .desired_width(WIDTH.min(ui.ctx().content_rect().width() - MARGINS)),
+        )
+        .labelled_by(label.id);
     let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if !entered && ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();

@@ -9,20 +9,25 @@ use egui::Ui;
 pub fn show(modeler: &mut Modeler, ui: &mut Ui, mut sessions: Vec<LeftBehind>) -> Option<Dialog> {
     ui.label("Trullo ended before this work was saved. Nothing of it is lost.");
     let (mut back, mut away) = (None, None);
-    for (i, session) in sessions.iter().enumerate() {
-        ui.horizontal(|ui| {
-            let name =
-                session.file.as_ref().and_then(|file| file.file_name()).map(|name| name.to_string_lossy());
-            let name = name.unwrap_or_else(|| "A new page".into());
-            ui.label(format!("{name}, {} steps, {}", session.steps, ago(session)));
-            if ui.button("Bring back").clicked() {
-                back = Some(i);
-            }
-            if ui.button("Throw away").clicked() {
-                away = Some(i);
-            }
-        });
-    }
+    super::scrolled(ui, |ui| {
+        for (i, session) in sessions.iter().enumerate() {
+            ui.horizontal_wrapped(|ui| {
+                let name = session
+                    .file
+                    .as_ref()
+                    .and_then(|file| file.file_name())
+                    .map(|name| name.to_string_lossy());
+                let name = name.unwrap_or_else(|| "A new page".into());
+                ui.label(format!("{name}, {} steps, {}", session.steps, ago(session)));
+                if ui.button("Bring back").clicked() {
+                    back = Some(i);
+                }
+                if ui.button("Throw away").clicked() {
+                    away = Some(i);
+                }
+            });
+        }
+    });
     if let Some(i) = back {
         modeler.bring_back(sessions.remove(i));
         return None;

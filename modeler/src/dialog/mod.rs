@@ -8,8 +8,11 @@ use crate::desk::Purpose;
 use crate::help;
 use crate::journal::LeftBehind;
 use crate::modeler::{Fetched, Modeler, Newcomer};
-use egui::{Align2, Key, Ui, Window};
+use egui::{Align2, Key, ScrollArea, Ui, Window};
 use std::path::PathBuf;
+
+/// Room above and below what is scrolled, points.
+const AROUND: f32 = 180.0;
 
 /// A question, or something to read.
 #[derive(Debug)]
@@ -145,6 +148,12 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     }
 }
 
+/// Content that can be scrolled where the window is too low for it.
+pub(crate) fn scrolled(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    let height = (ui.ctx().content_rect().height() - AROUND).max(100.0);
+    ScrollArea::vertical().max_height(height).show(ui, content);
+}
+
 fn unsaved(modeler: &mut Modeler, ui: &mut Ui, then: Then) -> Option<Dialog> {
     ui.label("There are changes that are in no file yet.");
     ui.horizontal(|ui| {
@@ -190,11 +199,13 @@ pub(crate) fn go_on(modeler: &mut Modeler, then: Then) {
 
 fn examples(modeler: &mut Modeler, ui: &mut Ui) -> Option<Dialog> {
     let mut chosen = None;
-    for (i, (title, _)) in modeler.desk.examples().iter().enumerate() {
-        if ui.add_sized([300.0, 26.0], egui::Button::new(*title)).clicked() {
-            chosen = Some(i);
+    scrolled(ui, |ui| {
+        for (i, (title, _)) in modeler.desk.examples().iter().enumerate() {
+            if ui.add_sized([300.0, 26.0], egui::Button::new(*title)).clicked() {
+                chosen = Some(i);
+            }
         }
-    }
+    });
     if let Some(i) = chosen {
         modeler.open_example(i);
         return None;

@@ -7,15 +7,22 @@ use crate::lesson::Lesson;
 use crate::modeler::Modeler;
 use crate::settings::{Habit, OVERHANGS, SCALES, Theme, Tool};
 use crate::stage::Look;
-use egui::{Button, Ui, Widget as _};
+use egui::{Button, ScrollArea, Ui, Widget as _};
+
+/// Bars narrower than this have narrower buttons, so that more of them stand on a line, points.
+const ROOMY: f32 = 880.0;
+
+/// Between a menu and the lower edge of the window, points.
+const MARGIN: f32 = 16.0;
 
 /// Shows it.
-pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
+pub fn show(modeler: &mut Modeler, ui: &mut Ui, has_panels: bool) {
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().button_padding = egui::vec2(9.0, 5.0);
-        ui.menu_button("File", |ui| files(modeler, ui));
-        ui.menu_button("Edit", |ui| edit::show(modeler, ui));
-        ui.menu_button("View", |ui| view(modeler, ui));
+        let beside = if ui.available_width() < ROOMY { 6.0 } else { 9.0 };
+        ui.spacing_mut().button_padding = egui::vec2(beside, 5.0);
+        menu(ui, "File", |ui| files(modeler, ui));
+        menu(ui, "Edit", |ui| edit::show(modeler, ui));
+        menu(ui, "View", |ui| view(modeler, ui));
         ui.separator();
         let undo = modeler.bench.document().undo_names().next().map(str::to_owned);
         let can_undo = undo.is_some() || !modeler.pad.is_empty();
@@ -42,9 +49,21 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         if ui.button("Lessons").on_hover_text("Three short lessons on your own page").clicked() {
             modeler.lesson = Some(Lesson::FIRST);
         }
+        let panels = ui.add(Button::selectable(has_panels, "Panels"));
+        if panels.on_hover_text("Parts and parameters at the sides of the view, or more room").clicked() {
+            modeler.view.panels = Some(!has_panels);
+        }
         if ui.button("?").on_hover_text("Keys and gestures").clicked() {
             modeler.dialog = Some(Dialog::Help);
         }
+    });
+}
+
+/// A menu that can be scrolled where the window is too low for it.
+fn menu(ui: &mut Ui, title: &str, content: impl FnOnce(&mut Ui)) {
+    ui.menu_button(title, |ui| {
+        let height = (ui.ctx().content_rect().bottom() - ui.cursor().top() - MARGIN).max(MARGIN);
+        ScrollArea::vertical().max_height(height).show(ui, content);
     });
 }
 

@@ -11,8 +11,19 @@ const TICK: Duration = Duration::from_millis(100);
 /// The width of a bar, points.
 const BAR: f32 = 110.0;
 
-/// Shows it.
+/// The least width of a window in which all is on one line, points.
+const ONE_LINE: f32 = 880.0;
+
+/// The room that the size of the model takes, and that with the number of triangles, points.
+const SIZE: f32 = 170.0;
+const SIZE_AND_TRIANGLES: f32 = 350.0;
+
+/// Shows it; in narrow windows as two lines, if something is being read or written.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
+    let is_wide = ui.available_width() >= ONE_LINE;
+    if !is_wide && !modeler.errands.is_empty() {
+        ui.horizontal_wrapped(|ui| errands(modeler, ui));
+    }
     ui.horizontal(|ui| {
         let name = modeler.bench.file().and_then(|file| file.file_name()).map(|name| name.to_string_lossy());
         let mark = if modeler.bench.is_unsaved() { " (not saved)" } else { "" };
@@ -23,12 +34,17 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         if modeler.solid().is_some_and(|solid| solid.unconstrained > 0) {
             ui.weak("support-free parts are still shown as drawn");
         }
-        errands(modeler, ui);
+        if is_wide {
+            errands(modeler, ui);
+        }
+        let room = ui.available_width();
         ui.with_layout(Layout::right_to_left(egui::Align::Center), |ui| {
             let Some(solid) = modeler.solid() else { return };
             let size = solid.bounds.size();
-            if !solid.bounds.is_empty() {
+            if !solid.bounds.is_empty() && room > SIZE {
                 ui.label(format!("{:.1} × {:.1} × {:.1} mm", size.x, size.y, size.z));
+            }
+            if !solid.bounds.is_empty() && room > SIZE_AND_TRIANGLES {
                 let triangles = solid.corners.len() / 3;
                 ui.weak(format!("{triangles} triangles in {:.0} ms", solid.took.as_secs_f64() * 1e3));
             }

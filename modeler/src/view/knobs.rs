@@ -11,13 +11,16 @@ use glam::{Vec2, Vec3};
 use sketch::suggest::View;
 
 /// How near a pen must come to a knob, points.
-const REACH: f32 = 15.0;
+pub const REACH: f32 = 15.0;
 
 /// How far from the middle of the part a knob stands at least, beyond the arrows, points.
 const NEAREST: f32 = 112.0;
 
 /// How far it stands off the part, points.
 const GAP: f32 = 24.0;
+
+/// Half the width of the text beside a knob, points.
+const HALF_A_TEXT: f32 = 52.0;
 
 /// Where a knob stands whose direction is not seen.
 const ASIDE: Vec2 = Vec2::new(-std::f32::consts::FRAC_1_SQRT_2, std::f32::consts::FRAC_1_SQRT_2);
@@ -75,7 +78,11 @@ impl Knob {
         let root = &modeler.bench.shown().root;
         let of_part =
             modeler.bench.selected().map(|path| [size(modeler, root, path), blend(modeler, root, path)]);
-        of_part.into_iter().flatten().chain([lens(modeler)]).flatten().collect()
+        let all = of_part.into_iter().flatten().chain([lens(modeler)]).flatten();
+        // With its text, each can be reached.
+        let lo = Vec2::new(HALF_A_TEXT, GAP);
+        let hi = (modeler.view.screen - Vec2::new(HALF_A_TEXT, 2.0 * GAP)).max(lo);
+        all.map(|knob| Self { at: knob.at.clamp(lo, hi), ..knob }).collect()
     }
 
     /// The knob at a place of the view, if there is one.
@@ -284,7 +291,7 @@ fn lens(modeler: &Modeler) -> Option<Knob> {
     Some(Knob {
         turns: Turns::Lens,
         label: "Lens",
-        at: from.clamp(Vec2::splat(GAP), (modeler.view.screen - 2.0 * GAP).max(Vec2::splat(GAP))),
+        at: from,
         from,
         grows,
         per_point: view.mm_per_px(view.depth(middle)) / shortening,
@@ -300,7 +307,9 @@ fn seen_along(view: &View, along: Vec3) -> Option<(Vec2, f32)> {
 }
 
 fn depth(modeler: &Modeler) -> Option<Knob> {
-    let [a, _, _, d] = ghost_plane(modeler)?;
+    let [left, right, right_too, left_too] = ghost_plane(modeler)?;
+    // Away from the hand that draws, and from what it chooses.
+    let [a, d] = if modeler.settings.left_handed { [right, right_too] } else { [left, left_too] };
     let drawn = modeler.pad.drawn_in()?;
     let value = modeler.pad.depth.or(modeler.pad.expectations.as_ref().map(|found| found.depth))?;
     let view = modeler.camera.view(modeler.view.screen);

@@ -103,7 +103,7 @@ fn card(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     let area = Area::new(Id::unique("lens")).order(Order::Middle).pivot(pivot).fixed_pos(corner);
     area.show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-            ui.set_width(WIDTH);
+            ui.set_width(WIDTH.min(response.rect.width() - 50.0));
             ui.horizontal(|ui| {
                 ui.strong("Field lens");
                 let end = Layout::right_to_left(Align::Center);

@@ -7,7 +7,9 @@ mod lens;
 mod overlay;
 mod pictures;
 mod selecting;
+mod sides;
 mod snapping;
+pub(crate) mod suggestions;
 
 #[cfg(test)]
 pub use handles::colors as handle_colors;
@@ -26,6 +28,8 @@ use sketch::gesture::Button;
 pub struct ViewState {
     /// Its size, points.
     pub screen: Vec2,
+    /// Its upper left corner in the window, points.
+    pub(super) origin: Pos2,
     /// Whether the next solid is to be shown whole.
     pub shows_new: bool,
     /// Whether the window has its colours.
@@ -34,8 +38,14 @@ pub struct ViewState {
     pub had_focus: bool,
     /// Whether the user wants to quit, and nothing is lost by it.
     pub quits: bool,
-    /// The suggestions' buttons of the last frame, in points of the view.
+    /// Whether the user wants panels at the sides of the view; none where the window's width decides.
+    pub(crate) panels: Option<bool>,
+    /// Where suggestions are shown.
+    pub(super) suggests: suggestions::Place,
+    /// The suggestions' buttons as they were shown last, in points of the view.
     pub(super) buttons: Vec<Button>,
+    /// Around the named views, in points of the view.
+    pub(super) sides: Option<Rect>,
     /// Pictures of the suggestions, as the screen has them.
     pub(super) pictures: pictures::Pictures,
     /// What the hand holds.
@@ -55,6 +65,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui, stage: &mut dyn Stage) {
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Model view"));
         modeler.view.screen = Vec2::new(rect.width().max(1.0), rect.height().max(1.0));
+        modeler.view.origin = rect.min;
         hand::heed(modeler, ui, &response);
         point(modeler, &response);
         picture(modeler, ui, rect, stage);

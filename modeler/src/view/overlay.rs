@@ -1,20 +1,15 @@
-//! What lies over the picture: strokes, curves, the selection with its handles, and what a sketch might become.
+//! What lies over the picture: strokes, curves, and the selection with its handles.
 
 use super::hand::Hold;
 use super::handles::{ALL, Handle, Handles};
 use super::knobs::{self, Knob, Turns};
-use super::{in_view, on_screen, snapping};
-use crate::camera::Side;
-use crate::expecting;
+use super::{in_view, on_screen, sides, snapping, suggestions};
 use crate::modeler::Modeler;
 use crate::theme;
 use blobtree::Aabb;
-use egui::{
-    Align2, Area, Button, Color32, CornerRadius, FontId, Id, Order, Painter, Pos2, Rect, Response, RichText,
-    Stroke, TextureHandle, Ui, vec2,
-};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Response, Stroke, Ui, vec2};
 use glam::{Vec2, Vec3};
-use sketch::suggest::{Suggestion, View};
+use sketch::suggest::View;
 
 /// Strokes as they are drawn.
 const STROKE: Color32 = Color32::from_rgba_premultiplied(30, 60, 130, 130);
@@ -22,17 +17,8 @@ const STROKE: Color32 = Color32::from_rgba_premultiplied(30, 60, 130, 130);
 /// What the eraser has passed over.
 const ERASED: Color32 = Color32::from_rgba_premultiplied(120, 40, 40, 120);
 
-/// The size of a suggestion's button, points: large enough to be struck through.
-const BUTTON: egui::Vec2 = vec2(168.0, 50.0);
-
-/// The size of the picture in it, points.
-const PICTURE: egui::Vec2 = vec2(0.5 * expecting::PICTURE[0] as f32, 0.5 * expecting::PICTURE[1] as f32);
-
 /// How far boxes around parts go beyond the model, as a share of its longest side.
 const BEYOND: f32 = 0.15;
-
-/// Between a sketch and its suggestions, points.
-const GAP: f32 = 18.0;
 
 /// Shows it.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
@@ -53,8 +39,8 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
     paint_ghost_plane(modeler, &painter, &view, response);
     paint_knobs(modeler, &painter, response);
     paint_sketch(modeler, &painter, &view, response);
-    suggestions(modeler, ui, &view, response);
-    view_buttons(modeler, ui, response);
+    suggestions::beside(modeler, ui, response);
+    sides::show(modeler, ui, response);
 }
 
 /// A box without what lies far outside the model: what cuts goes far beyond it.
@@ -191,121 +177,4 @@ fn paint_line(painter: &Painter, line: Vec<Pos2>, stroke: Stroke) {
             painter.line(line, stroke);
         }
     }
-}
-
-/// The list beside the sketch, never under the pen: on the right, for left-handed people on the left, unless there is
-/// more room on the other side.
-fn suggestions(modeler: &mut Modeler, ui: &mut Ui, view: &View, response: &Response) {
-    modeler.view.buttons.clear();
-    let Some(expectations) = modeler.pad.expectations.clone() else { return };
-    let places: Vec<Vec2> =
-        modeler.pad.sketch().places().filter_map(|p| modeler.pad.shown(p, view)).collect();
-    let lo = places.iter().fold(Vec2::INFINITY, |lo, p| lo.min(*p));
-    let hi = places.iter().fold(Vec2::NEG_INFINITY, |hi, p| hi.max(*p));
-    if places.is_empty() {
-        return;
-    }
-    let rows = expectations.suggestions.len().max(1) as f32;
-    let size = Vec2::new(BUTTON.x + 8.0, rows * (BUTTON.y + 4.0) + 8.0);
-    let screen = modeler.view.screen;
-    let (on_left, on_right) = (lo.x, screen.x - hi.x);
-    let right = if modeler.settings.left_handed {
-        on_left < size.x + GAP && on_left < on_right
-    } else {
-        on_right >= size.x + GAP || on_right >= on_left
-    };
-    let x = if right { hi.x + GAP } else { lo.x - GAP - size.x };
-    let at = Vec2::new(x, lo.y).clamp(Vec2::splat(4.0), (screen - size - 4.0).max(Vec2::splat(4.0)));
-    let mut chosen = None;
-    let area = Area::new(Id::unique("suggestions")).order(Order::Middle).fixed_pos(on_screen(at, response));
-    area.show(ui.ctx(), |ui| {
-        ui.spacing_mut().item_spacing.y = 4.0;
-        if let (true, Some(reason)) = (expectations.suggestions.is_empty(), &expectations.no_outline) {
-            let text = format!("No solid of it yet: {reason}.");
-            egui::Frame::popup(ui.style()).inner_margin(8.0).show(ui, |ui| {
-                ui.set_max_width(BUTTON.x);
-                ui.label(RichText::new(text).color(ui.visuals().strong_text_color()));
-            });
-        }
-        for (i, suggestion) in expectations.suggestions.iter().enumerate() {
-            let image = expectations.pictures.get(i).and_then(Option::as_ref);
-            let picture = modeler.view.pictures.get(ui.ctx(), expectations.version, i, image);
-            let button = suggestion_button(ui, suggestion, picture.as_ref());
-            let rect = button.rect.translate(-response.rect.min.to_vec2());
-            modeler.view.buttons.push(sketch::gesture::Button {
-                min: Vec2::new(rect.min.x, rect.min.y),
-                max: Vec2::new(rect.max.x, rect.max.y),
-            });
-            if button.clicked() {
-                chosen = Some(i);
-            }
-        }
-    });
-    if let Some(chosen) = chosen {
-        modeler.choose(chosen);
-    }
-}
-
-/// A card: its colour at the edge, the picture of what would come of it, and its name.
-fn suggestion_button(ui: &mut Ui, suggestion: &Suggestion, picture: Option<&TextureHandle>) -> Response {
-    let [r, g, b] = suggestion.color.0;
-    let edge = Color32::from_rgb(r, g, b);
-    let button = Button::new("").fill(ui.visuals().window_fill).min_size(BUTTON);
-    let response = ui.add(button.stroke(Stroke::new(1.5, edge))).on_hover_text(suggestion.sentence);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, suggestion.name));
-    let (painter, rect) = (ui.painter(), response.rect);
-    let side = Rect::from_min_size(rect.min, vec2(7.0, rect.height()));
-    painter.rect_filled(side, CornerRadius { nw: 3, sw: 3, ne: 0, se: 0 }, edge);
-    let frame = Rect::from_center_size(rect.left_center() + vec2(12.0 + 0.5 * PICTURE.x, 0.0), PICTURE);
-    if let Some(picture) = picture {
-        let whole = Rect::from_min_max(Pos2::ZERO, egui::pos2(1.0, 1.0));
-        painter.image(picture.id(), frame, whole, Color32::WHITE);
-    }
-    let at = egui::pos2(frame.right() + 8.0, rect.center().y);
-    let color = ui.visuals().strong_text_color();
-    painter.text(at, Align2::LEFT_CENTER, suggestion.name, FontId::proportional(15.0), color);
-    response
-}
-
-/// The named views, in the corner of the hand that draws.
-fn view_buttons(modeler: &mut Modeler, ui: &mut Ui, response: &Response) {
-    let (pivot, corner) = if modeler.settings.left_handed {
-        (Align2::LEFT_TOP, response.rect.left_top() + vec2(8.0, 8.0))
-    } else {
-        (Align2::RIGHT_TOP, response.rect.right_top() + vec2(-8.0, 8.0))
-    };
-    let area = Area::new(Id::unique("views")).order(Order::Middle).pivot(pivot).fixed_pos(corner);
-    area.show(ui.ctx(), |ui| {
-        egui::Frame::popup(ui.style()).inner_margin(4.0).show(ui, |ui| {
-            egui::Grid::new("sides").spacing([3.0, 3.0]).show(ui, |ui| {
-                let rows: [&[Side]; 3] = [
-                    &[Side::Left, Side::Top, Side::Right],
-                    &[Side::Front, Side::Corner, Side::Back],
-                    &[Side::Bottom],
-                ];
-                for row in rows {
-                    for &side in row {
-                        if ui.add(Button::new(side.name()).min_size(vec2(54.0, 22.0))).clicked() {
-                            modeler.look_from(side);
-                        }
-                    }
-                    if row.len() == 1 {
-                        if ui.button("See all").on_hover_text("See everything (F)").clicked() {
-                            let bounds = modeler.bounds();
-                            modeler.camera.show(bounds);
-                        }
-                        let mut flat = !modeler.camera.perspective;
-                        if ui
-                            .checkbox(&mut flat, "Flat")
-                            .on_hover_text("Far things as large as near ones")
-                            .changed()
-                        {
-                            modeler.camera.perspective = !flat;
-                        }
-                    }
-                    ui.end_row();
-                }
-            });
-        });
-    });
 }

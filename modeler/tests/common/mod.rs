@@ -67,9 +67,19 @@ pub fn screen_at(
     sessions: Option<PathBuf>,
     prepare: impl FnOnce(&mut Modeler),
 ) -> Screen {
+    screen_of(vec2(1280.0, 800.0), desk, sessions, prepare)
+}
+
+/// One of this size, points.
+pub fn screen_of(
+    size: egui::Vec2,
+    desk: impl Desk + 'static,
+    sessions: Option<PathBuf>,
+    prepare: impl FnOnce(&mut Modeler),
+) -> Screen {
     let mut modeler = Modeler::new(Box::new(desk), sessions, Arc::new(|| ())).expect("threads");
     prepare(&mut modeler);
-    let builder = Harness::builder().with_size([1280.0, 800.0]);
+    let builder = Harness::builder().with_size(size);
     let mut screen =
         builder.build_ui_state(|ui, modeler: &mut Modeler| modeler.ui(ui, &mut NoStage), modeler);
     settle(&mut screen);
