@@ -75,6 +75,43 @@ pub fn beside(
     Some((together(commands)?, places))
 }
 
+/// What moves the parts into an operator, in their order, in front of its child `index`, and where they then are; the
+/// warps that bend only them come along. None if one of them is all there is.
+pub fn moved(
+    root: &NodeRef,
+    paths: &[NodePath],
+    mut parent: NodePath,
+    mut index: usize,
+) -> Option<(Command, Vec<NodePath>)> {
+    let mut waiting = takeable(root, paths)?;
+    let (mut commands, mut places) = (Vec::new(), Vec::<NodePath>::new());
+    while !waiting.is_empty() {
+        let from = waiting.remove(0);
+        commands.push(Command::Move { from: from.clone(), parent: parent.clone(), index });
+        let (&gone, old_parent) = from.0.split_last()?;
+        index -= usize::from(parent.0 == old_parent && gone < index);
+        close_up(&mut parent, &from);
+        for path in waiting.iter_mut().chain(&mut places) {
+            close_up(path, &from);
+            shift(path, &parent, index);
+        }
+        places.push(parent.child(index));
+        index += 1;
+    }
+    Some((together(commands)?, places))
+}
+
+/// Where a part is after another one was taken away.
+fn close_up(path: &mut NodePath, gone: &NodePath) {
+    let Some((&index, parent)) = gone.0.split_last() else { return };
+    if path.0.starts_with(parent)
+        && let Some(own) = path.0.get_mut(parent.len())
+        && *own > index
+    {
+        *own -= 1;
+    }
+}
+
 /// Where a part is after something was inserted.
 fn shift(path: &mut NodePath, parent: &NodePath, index: usize) {
     if path.0.starts_with(&parent.0)
@@ -204,6 +241,29 @@ mod tests {
             (copies, names),
             (paths(["/1", "/3/1", "/3/3"]), vec!["a".into(), "c".into(), "d".into()])
         );
+    }
+
+    #[test]
+    fn parts_are_moved_in_their_order_with_what_bends_them_and_are_where_it_is_said() {
+        let of = |root: &NodeRef, places: &[NodePath]| -> Vec<String> {
+            places.iter().map(|path| outline(path.find(root).expect("a part"))).collect()
+        };
+        for (chosen, parent, index, expected, moved_parts) in [
+            (vec!["/0", "/1/0"], "/2", 1, "((c a (b) d e))", vec!["a", "(b)"]),
+            (vec!["/2/0", "/2/2"], "/", 1, "(a c e (b) (d))", vec!["c", "e"]),
+            (vec!["/0", "/2/1", "/2/2"], "/2", 3, "((b) (c a d e))", vec!["a", "d", "e"]),
+            (vec!["/2/0", "/2/1"], "/2", 3, "(a (b) (e c d))", vec!["c", "d"]),
+            (vec!["/1/0"], "/", 0, "((b) a (c d e))", vec!["(b)"]),
+        ] {
+            let chosen: Vec<NodePath> = chosen.into_iter().map(path).collect();
+            let (command, places) = moved(&root(), &chosen, path(parent), index).expect("they can move");
+            let root = after(command);
+            assert_eq!(
+                (outline(&root).as_str(), of(&root, &places)),
+                (expected, moved_parts.iter().map(|s| (*s).to_owned()).collect())
+            );
+        }
+        assert_eq!(moved(&root(), &paths(["/"]), path("/2"), 0), None);
     }
 
     #[test]

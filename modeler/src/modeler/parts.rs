@@ -4,7 +4,7 @@ use super::Modeler;
 use crate::extent;
 use crate::placing::{self, Motion};
 use crate::several;
-use blobtree::{Aabb, Command, NodePath, Operator};
+use blobtree::{Aabb, Command, NodePath, Operator, Shape};
 use glam::{Vec2, Vec3};
 
 /// Why a part cannot have a copy.
@@ -67,6 +67,29 @@ impl Modeler {
         let root = &self.bench.scene().root;
         let found = several::beside(root, self.bench.selection(), |path| placing::mirrored(root, path));
         self.put_beside(found);
+    }
+
+    /// What is moved if this node is dragged in the tree: all that is selected, if it is one of them.
+    pub(crate) fn moved_with(&self, dragged: &NodePath) -> Vec<NodePath> {
+        let selection = self.bench.selection();
+        if selection.contains(dragged) { selection.to_vec() } else { vec![dragged.clone()] }
+    }
+
+    /// Moves what was dragged in the tree to what it was dropped on, and selects it: an operator gets it as its last
+    /// child, others as their neighbour.
+    pub(crate) fn drop_in_tree(&mut self, dragged: &NodePath, onto: &NodePath) {
+        let (root, dragged) = (&self.bench.scene().root, self.moved_with(dragged));
+        let place = match (onto.find(root).map(|node| &node.shape), onto.parent(), onto.0.last()) {
+            (Some(Shape::Operator(_, children)), _, _) => Some((onto.clone(), children.len())),
+            (_, Some(parent), Some(&index)) => Some((parent, index + 1)),
+            _ => None,
+        };
+        let Some((parent, index)) = place.filter(|_| !dragged.contains(onto)) else { return };
+        if let Some((command, places)) = several::moved(root, &dragged, parent, index)
+            && self.apply(command)
+        {
+            self.select_all(places);
+        }
     }
 
     fn put_beside(&mut self, found: Option<(Command, Vec<NodePath>)>) {

@@ -5,8 +5,11 @@ use crate::modeler::Modeler;
 use crate::seams;
 use crate::settings::Tool;
 use crate::theme;
-use blobtree::{Color, Command, Node, NodePath, NodeRef, Operator, Shape, Sharpness, Warp};
-use egui::{Color32, Id, Response, RichText, ScrollArea, Sense, Ui, collapsing_header};
+use blobtree::{Color, Node, NodePath, NodeRef, Operator, Shape, Sharpness, Warp};
+use egui::{
+    Color32, DragAndDrop, FontId, Id, LayerId, Order, Rect, Response, RichText, ScrollArea, Sense, Ui,
+    collapsing_header,
+};
 
 /// Nodes below which branches begin closed.
 const OPEN_UP_TO: usize = 40;
@@ -25,7 +28,8 @@ struct Done {
     /// Whether it is selected with what is selected.
     too: bool,
     hovered: Option<NodePath>,
-    command: Option<Command>,
+    /// What was dragged, and what it was dropped on.
+    dropped: Option<(NodePath, NodePath)>,
     /// What the menu does with all selected nodes.
     act: Option<edit::Act>,
 }
@@ -51,9 +55,27 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     if let Some(act) = done.act {
         act(modeler);
     }
-    if let Some(command) = done.command {
-        modeler.apply(command);
+    if let Some((dragged, onto)) = done.dropped {
+        modeler.drop_in_tree(&dragged, &onto);
     }
+    show_dragged(modeler, ui);
+}
+
+/// What is being dragged, beside the pointer.
+fn show_dragged(modeler: &Modeler, ui: &Ui) {
+    let Some(dragged) = DragAndDrop::payload::<Dragged>(ui.ctx()) else { return };
+    let Some(at) = ui.input(|input| input.pointer.latest_pos()) else { return };
+    let moved = modeler.moved_with(&dragged.0);
+    let text = match &moved[..] {
+        [only] => only.find(&modeler.bench.scene().root).map(|node| title(node)).unwrap_or_default(),
+        several => format!("{} parts", several.len()),
+    };
+    let painter = ui.ctx().layer_painter(LayerId::new(Order::Tooltip, Id::unique("dragged")));
+    let color = ui.visuals().strong_text_color();
+    let galley = painter.layout_no_wrap(text, FontId::proportional(14.0), color);
+    let place = Rect::from_min_size(at + egui::vec2(14.0, 6.0), galley.size());
+    painter.rect_filled(place.expand(4.0), 3.0, ui.visuals().window_fill);
+    painter.galley(place.min, galley, color);
 }
 
 /// All nodes that show, line by line. Trees may be deep, and lines in lines in lines would need much of the stack.
@@ -122,12 +144,12 @@ fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &m
     if button.secondary_clicked() && !is_selected {
         (done.selected, done.too) = (Some(path.clone()), false);
     }
-    dropped(node, path, &button, ui, done);
+    dropped(path, &button, ui, done);
     button.context_menu(|ui| done.act = edit::parts(modeler, ui));
 }
 
-/// Takes in a node that is dropped on this one: an operator gets it as its last child, others as their neighbour.
-fn dropped(node: &Node, path: &NodePath, button: &Response, ui: &Ui, done: &mut Done) {
+/// Takes in a node that is dropped on this one.
+fn dropped(path: &NodePath, button: &Response, ui: &Ui, done: &mut Done) {
     if button.dnd_hover_payload::<Dragged>().is_some() {
         ui.painter().rect_stroke(
             button.rect,
@@ -136,15 +158,9 @@ fn dropped(node: &Node, path: &NodePath, button: &Response, ui: &Ui, done: &mut 
             egui::StrokeKind::Outside,
         );
     }
-    let Some(dragged) = button.dnd_release_payload::<Dragged>().filter(|dragged| dragged.0 != *path) else {
-        return;
-    };
-    let place = match (&node.shape, path.parent(), path.0.last()) {
-        (Shape::Operator(_, children), _, _) => Some((path.clone(), children.len())),
-        (_, Some(parent), Some(&index)) => Some((parent, index + 1)),
-        _ => None,
-    };
-    done.command = place.map(|(parent, index)| Command::Move { from: dragged.0.clone(), parent, index });
+    if let Some(dragged) = button.dnd_release_payload::<Dragged>() {
+        done.dropped = Some((dragged.0.clone(), path.clone()));
+    }
 }
 
 /// The operators with the names that the user reads.
