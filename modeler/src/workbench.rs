@@ -141,6 +141,11 @@ impl Workbench {
         self.preview.is_some()
     }
 
+    /// What is being dragged: the command that would do it.
+    pub fn dragged(&self) -> Option<&Command> {
+        self.preview.as_ref().map(|(command, _)| command)
+    }
+
     /// The user's file, if there is one.
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()

@@ -156,9 +156,15 @@ impl Modeler {
 
     /// Does the same to each selected node, as one step.
     pub(crate) fn each_selected(&mut self, command: impl Fn(NodePath) -> Command) {
-        let commands: Vec<Command> = self.bench.selection().iter().cloned().map(command).collect();
-        if let Some(command) = several::together(commands) {
+        if let Some(command) = several::together(self.bench.selection().iter().cloned().map(command)) {
             self.apply(command);
+        }
+    }
+
+    /// Shows what the same would do to each selected node.
+    pub(crate) fn try_each(&mut self, command: impl Fn(NodePath) -> Command) {
+        if let Some(command) = several::together(self.bench.selection().iter().cloned().map(command)) {
+            self.try_out(command, false);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Everything around the model view.
 
 mod bar;
+mod color;
 mod edit;
 mod history;
 mod parameters;
@@ -27,6 +28,7 @@ const TREE_SHARE: f32 = 0.38;
 
 /// Shows the bar above, the tree and the parameters at the sides, and a line below.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
+    parameters::finish(modeler, ui);
     let width = ui.available_width();
     let has_panels = modeler.view.panels.unwrap_or(width >= ONE_SIDE);
     suggestions::find_place(modeler, has_panels);

@@ -1,5 +1,6 @@
 //! The parameters of the selected node: its name, its colour, how it is combined, and all its numbers.
 
+use super::color;
 use super::several;
 use super::tree::{operators, title};
 use crate::cutting::Cut;
@@ -19,6 +20,31 @@ struct Wish {
     is_final: bool,
 }
 
+/// Does what was shown while a name was typed or a colour was looked for, as soon as that has come to an end: each is
+/// one step, however many letters and colours there were on the way.
+pub fn finish(modeler: &mut Modeler, ui: &Ui) {
+    let is_named = |command: &Command| matches!(command, Command::SetName { .. });
+    let Some(command) = modeler.bench.dragged() else { return };
+    let goes_on = match command {
+        command if is_named(command) => ui.ctx().text_edit_focused(),
+        command if colors(command) => ui.input(|input| input.pointer.any_down()),
+        _ => true,
+    };
+    if !goes_on {
+        let command = command.clone();
+        modeler.apply(command);
+    }
+}
+
+/// Whether a command gives parts a colour.
+fn colors(command: &Command) -> bool {
+    match command {
+        Command::SetColor { .. } => true,
+        Command::Together(commands) => commands.iter().all(colors),
+        _ => false,
+    }
+}
+
 /// Shows them.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     let Some(path) = modeler.bench.selected().cloned() else {
@@ -32,9 +58,12 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     };
     let Some(node) = path.find(&modeler.bench.shown().root).cloned() else { return };
     ui.strong(title(&node));
-    let mut command = about(ui, &node, &path);
+    let (tried, mut command) = about(ui, &node, &path);
     command = command.or_else(|| combined(modeler, ui, &path));
     command = command.or_else(|| cut(modeler, ui));
+    if let Some(command) = tried {
+        modeler.try_out(command, false);
+    }
     refresh_form(modeler, &path);
     let is_through = modeler.selected_cut().is_some_and(Cut::is_through);
     let wish = modeler.form.as_ref().and_then(|(_, form)| fields(ui, form, is_through));
@@ -46,25 +75,23 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     }
 }
 
-/// Name, colour, and whether it is heard.
-fn about(ui: &mut Ui, node: &NodeRef, path: &NodePath) -> Option<Command> {
-    let mut command = None;
+/// Name, colour, and whether it is heard: what is to be shown while it goes on, see [`finish`], and what is to be done.
+fn about(ui: &mut Ui, node: &NodeRef, path: &NodePath) -> (Option<Command>, Option<Command>) {
+    let (mut tried, mut command) = (None, None);
     Grid::new("about").num_columns(2).show(ui, |ui| {
         let label = ui.label("Name");
         let mut name = node.name.clone().unwrap_or_default();
         let field = ui.add(TextEdit::singleline(&mut name).desired_width(150.0)).labelled_by(label.id);
         if field.changed() {
             let name = Some(name).filter(|name| !name.is_empty());
-            command = Some(Command::SetName { path: path.clone(), name });
+            tried = Some(Command::SetName { path: path.clone(), name });
         }
         ui.end_row();
         let label = ui.label("Colour");
         ui.horizontal(|ui| {
-            let mut color = node.color.unwrap_or(blobtree::STONE).0;
-            let picker =
-                ui.color_edit_button_srgb(&mut color).labelled_by(label.id).accessible_name("Colour");
-            if picker.changed() {
-                command = Some(Command::SetColor { path: path.clone(), color: Some(Color(color)) });
+            let color = node.color.unwrap_or(blobtree::STONE).0;
+            if let Some(color) = color::choose(ui, label.id, color) {
+                tried = Some(Command::SetColor { path: path.clone(), color: Some(Color(color)) });
             }
             if node.color.is_some()
                 && ui.button("Inherit").on_hover_text("Take the colour of what is around").clicked()
@@ -80,7 +107,7 @@ fn about(ui: &mut Ui, node: &NodeRef, path: &NodePath) -> Option<Command> {
         }
         ui.end_row();
     });
-    command
+    (tried, command)
 }
 
 /// How the selected operator, else the one above the selected node, combines.

@@ -1,5 +1,6 @@
 //! Several selected parts: which they are, and what can be done with all of them.
 
+use super::color;
 use super::edit;
 use super::tree::title;
 use crate::modeler::Modeler;
@@ -11,7 +12,7 @@ const MOST_NAMES: usize = 12;
 
 /// Shows it.
 pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
-    let root = modeler.bench.scene().root.clone();
+    let root = modeler.bench.shown().root.clone();
     let nodes: Vec<_> = modeler.bench.selection().iter().filter_map(|path| path.find(&root)).collect();
     ui.strong(format!("{} parts selected", nodes.len()));
     for node in nodes.iter().take(MOST_NAMES) {
@@ -21,12 +22,11 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         ui.weak(format!("and {} more", nodes.len() - MOST_NAMES));
     }
     ui.separator();
-    let mut color = nodes.iter().find_map(|node| node.color).unwrap_or(STONE).0;
+    let color = nodes.iter().find_map(|node| node.color).unwrap_or(STONE).0;
     ui.horizontal(|ui| {
         let label = ui.label("Colour");
-        let picker = ui.color_edit_button_srgb(&mut color).labelled_by(label.id).accessible_name("Colour");
-        if picker.changed() {
-            modeler.each_selected(|path| Command::SetColor { path, color: Some(Color(color)) });
+        if let Some(color) = color::choose(ui, label.id, color) {
+            modeler.try_each(|path| Command::SetColor { path, color: Some(Color(color)) });
         }
     });
     ui.separator();
