@@ -25,6 +25,7 @@ pub mod keys;
 mod known;
 pub mod lens;
 pub mod lesson;
+mod lowest;
 mod meshes;
 mod modeler;
 mod newest;

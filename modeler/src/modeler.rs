@@ -22,6 +22,7 @@ use crate::kept::Kept;
 use crate::known::Known;
 use crate::lens::Lens;
 use crate::lesson::Lesson;
+use crate::lowest::Lowest;
 use crate::notices::Notices;
 use crate::pad::{Pad, Stroked};
 use crate::panels;
@@ -88,6 +89,8 @@ pub struct Modeler {
     hovered_box: Known<Aabb>,
     /// Around the selected nodes before they were dragged.
     held_box: Option<Aabb>,
+    /// The lowest point of the selected nodes.
+    pub(crate) lowest: Lowest,
     /// What the selected node is cut out of.
     cut: Known<Cut>,
     /// The form of the selected node, and the scene it was made for.
@@ -147,6 +150,7 @@ impl Modeler {
             boxes: Vec::new(),
             hovered_box: Known::default(),
             held_box: None,
+            lowest: Lowest::start(wake.clone())?,
             cut: Known::default(),
             form: None,
             waiting: None,
@@ -216,7 +220,7 @@ impl Modeler {
         let sketched = self.pad.sketch().is_empty() || self.pad.expectations.as_ref().is_some_and(is_newest);
         let asked = self.is_asked();
         let seen = self.lens.as_ref().is_none_or(Lens::is_at_rest);
-        let looked = seen && self.pointing.is_at_rest();
+        let looked = seen && self.pointing.is_at_rest() && self.lowest.is_at_rest();
         sketched && asked && looked && self.errands.is_empty() && self.solids.is_done(self.solid.as_deref())
     }
 
@@ -285,6 +289,7 @@ impl Modeler {
         for (known, path) in self.boxes.iter_mut().zip(selection) {
             known.follow(root, Some(path), extent::box_of);
         }
+        self.lowest.follow(&self.bench.scene().root, selection);
         self.hovered_box.follow(root, self.hovered.as_ref(), extent::box_of);
         let primitive = self.bench.selected().and_then(|path| view::primitive_at(root, path));
         self.cut.follow(root, primitive.as_ref(), Cut::of);

@@ -220,6 +220,10 @@ fn what_is_dragged_near_the_bed_or_the_mirror_plane_rests_there_unless_it_is_let
     settle(&mut screen);
     assert!(screen.state().rests_on().is_empty());
     assert!(middle_of(&screen).distance(Vec3::new(0.0, 0.0, 10.0)) < 0.2, "{}", middle_of(&screen));
+    // Its lowest point was at z = 10.
+    let moved = screen.state().bench.scene().root.children()[2].clone();
+    let Shape::Warp(blobtree::Warp::Transform(moved), _) = &moved.shape else { panic!("{moved:?}") };
+    assert!((moved.translate.z + 10.0).abs() < 0.005, "{}", moved.translate);
     press(&mut screen, "Undo");
     press(&mut screen, "View");
     press(&mut screen, "Snap while dragging");

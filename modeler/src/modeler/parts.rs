@@ -1,7 +1,6 @@
 //! What is done to the selected parts: one of them or several, always as one step.
 
 use super::Modeler;
-use crate::extent;
 use crate::placing::{self, Motion};
 use crate::several;
 use blobtree::{Aabb, Command, NodePath, Operator, Shape};
@@ -106,10 +105,7 @@ impl Modeler {
 
     /// Puts what is selected on the ground. Several parts keep their places to each other.
     pub fn ground_selected(&mut self) {
-        let root = &self.bench.scene().root;
-        let selection = self.bench.selection().iter();
-        let lowest = selection.filter_map(|path| extent::lowest(root, path)).reduce(f32::min);
-        if let Some(lowest) = lowest {
+        if let Some(lowest) = self.lowest.wait(&self.bench.scene().root, self.bench.selection()) {
             self.place(Motion::Move(Vec3::new(0.0, 0.0, -lowest)), true);
         }
     }

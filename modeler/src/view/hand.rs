@@ -244,7 +244,14 @@ fn handle_dragged(modeler: &mut Modeler, ui: &Ui, response: &Response, handle: H
         return;
     }
     let motion = handle.motion(modeler, from, at);
-    let (Some(motion), Some(part)) = (motion, modeler.held_box()) else { return };
+    let (Some(motion), Some(mut part)) = (motion, modeler.held_box()) else { return };
+    // Boxes around parts are a little too large, and parts would rest above the bed.
+    let bench = &modeler.bench;
+    let lowest = match let_go {
+        true => modeler.lowest.wait(&bench.scene().root, bench.selection()),
+        false => modeler.lowest.found(),
+    };
+    part.min.z = lowest.unwrap_or(part.min.z);
     let is_free = !modeler.settings.snaps || ui.input(|input| input.modifiers.command);
     let view = modeler.camera.view(modeler.view.screen);
     let (motion, guides) = if is_free {
