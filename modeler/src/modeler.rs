@@ -229,11 +229,12 @@ impl Modeler {
         view::knobs(self)
     }
 
-    /// The seams of the solid as it is drawn, as far as they are known and wanted.
-    pub fn seams(&self) -> &[Line] {
+    /// The seams of the solid as it is drawn, as far as they are known and wanted, and how strongly they show, from 0 to
+    /// 1.
+    pub fn seams(&self) -> (&[Line], f32) {
         match &self.solid {
             Some(solid) if self.settings.shows_seams => self.solids.seams(solid),
-            _ => &[],
+            _ => (&[], 0.0),
         }
     }
 

@@ -9,7 +9,7 @@ use crate::seams::{Ground, seams};
 use crate::stage::Line;
 use blobtree::{Aabb, BakeStore, ChangedPlaces, Field, NodeRef, Owners, Palette, Tree, solid_box};
 use glam::Vec3;
-use polygonizer::{Cancel, CellSize, Options, Surface, VertexKind};
+use polygonizer::{Cancel, CellSize, Options, PolygonizeError, Surface, VertexKind};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -17,12 +17,27 @@ use std::time::{Duration, Instant};
 /// Cells along the longest side: of what is shown at once, and of what is shown when there is time.
 const CELLS: [f32; 2] = [64.0, 192.0];
 
+/// Most triangles of either: what a processor that plays a graphics card draws within 50 ms, and what takes 100 MB. Of
+/// the examples, the coarse ones have up to 70,000, the fine ones up to 635,000.
+const MOST_TRIANGLES: [usize; 2] = [300_000, 1_200_000];
+
+/// How much larger cells become in one go where there are more triangles than that: more than [`SLACK`], so that none are
+/// kept.
+const COARSER: f32 = 1.6;
+
 /// How much larger or smaller cells may be than those are before all is made anew, so that a drag which changes the
 /// size a little follows the change alone.
 const SLACK: f32 = 1.5;
 
 /// How long nothing new must be asked before the fine surface is begun.
 const REST: Duration = Duration::from_millis(150);
+
+/// If the seams of the last coarse solid took no longer than this, the next ones come with their solid, so that they
+/// move with what is dragged: twice what the seams of most examples take, a fifth of what those of the forest do.
+const WITH_SOLID: Duration = Duration::from_millis(20);
+
+/// How long seams fade whose own take longer.
+const FADES: Duration = Duration::from_millis(300);
 
 /// Points that are coloured together.
 const TOGETHER: usize = 256;
@@ -63,6 +78,8 @@ pub struct Solid {
     pub cell: f32,
     /// Whether it is the finest that is made.
     pub is_fine: bool,
+    /// Whether its cells are larger than usual, because it would have too many triangles.
+    pub is_coarsened: bool,
     /// How many of its support-free nodes are shown as drawn.
     pub unconstrained: usize,
     /// Why it was asked for.
@@ -81,10 +98,10 @@ struct Seams {
     lines: Vec<Line>,
 }
 
-/// What comes of a question: a solid first, then its seams, for which nobody waits.
+/// What comes of a question: a solid, with its seams if they are quick; else they come later.
 #[derive(Debug)]
 enum Made {
-    Solid(Solid),
+    Solid(Solid, Option<Seams>),
     Seams(Seams),
 }
 
@@ -106,6 +123,8 @@ pub struct SolidMaker {
     /// Whether what was asked last is to have seams.
     has_seams: bool,
     seams: Option<Seams>,
+    /// Since when there is a newer solid than the one the seams are of.
+    outdated: Option<Instant>,
     /// Solids before this one are of a document that is gone.
     first: u64,
 }
@@ -117,16 +136,22 @@ impl SolidMaker {
     /// Errors: a system without a thread to spare.
     pub fn start(wake: Arc<dyn Fn() + Send + Sync>, bake: Option<Bake>) -> std::io::Result<Self> {
         let mut maker = Maker {
-            levels: CELLS.map(|cells| Level { cells, surface: None }),
+            levels: [0, 1].map(|level| Level {
+                cells: CELLS[level],
+                most: MOST_TRIANGLES[level],
+                coarser: 1.0,
+                surface: None,
+            }),
             extent: Aabb::EMPTY,
             reach: 0.0,
             bakes: BakeStore::new(),
             bake,
+            sewing: Duration::ZERO,
         };
         let worker = Newest::start("solid", wake, move |question: Question, answering| {
             maker.make(&question, answering);
         })?;
-        Ok(Self { worker, asked: 0, has_seams: false, seams: None, first: 0 })
+        Ok(Self { worker, asked: 0, has_seams: false, seams: None, outdated: None, first: 0 })
     }
 
     /// Asks for the solid of a tree, with its seams or without, in a frame that began `now`; returns its version.
@@ -143,16 +168,31 @@ impl SolidMaker {
         let mut newest = None;
         for made in self.worker.answers() {
             match made {
-                Made::Solid(solid) => newest = Some(solid),
+                Made::Solid(solid, seams) => {
+                    newest = Some(solid);
+                    self.seams = seams.or(self.seams.take());
+                }
                 Made::Seams(seams) => self.seams = Some(seams),
             }
         }
-        newest.filter(|solid| solid.version >= self.first)
+        newest.filter(|solid| solid.version >= self.first).inspect(|solid| {
+            let is_outdated = self.seams.as_ref().is_some_and(|seams| seams.version != solid.version);
+            self.outdated = is_outdated.then(|| self.outdated.unwrap_or_else(Instant::now));
+        })
     }
 
-    /// The seams of a solid, as far as they are known.
-    pub fn seams(&self, solid: &Solid) -> &[Line] {
-        self.seams.as_ref().filter(|seams| seams.version == solid.version).map_or(&[], |seams| &seams.lines)
+    /// The seams of a solid, as far as they are known, and how strongly they show, from 0 to 1: those of the solid
+    /// before fade until its own are there.
+    pub fn seams(&self, solid: &Solid) -> (&[Line], f32) {
+        let Some(seams) = &self.seams else { return (&[], 0.0) };
+        let shown = match self.outdated {
+            _ if seams.version == solid.version => 1.0,
+            Some(since) if seams.version >= self.first => {
+                1.0 - since.elapsed().as_secs_f32() / FADES.as_secs_f32()
+            }
+            _ => 0.0,
+        };
+        if shown > 0.0 { (&seams.lines, shown) } else { (&[], 0.0) }
     }
 
     /// Nothing that was asked for so far is wanted any more.
@@ -171,6 +211,10 @@ impl SolidMaker {
 /// A surface kept from one question to the next.
 struct Level {
     cells: f32,
+    /// Most triangles.
+    most: usize,
+    /// How much larger its cells are than usual, because of that.
+    coarser: f32,
     surface: Option<(NodeRef, Surface)>,
 }
 
@@ -183,6 +227,8 @@ struct Maker {
     reach: f32,
     bakes: BakeStore,
     bake: Option<Bake>,
+    /// How long the seams of the last coarse solid took.
+    sewing: Duration,
 }
 
 impl Maker {
@@ -193,14 +239,28 @@ impl Maker {
         let palette = Palette::new(&question.root, &BakeStore::new());
         self.choose_extent(&tree);
         let [coarse, fine] = &mut self.levels;
-        let Some(surface) = coarse.follow(&question.root, &tree, self.extent, &answering.closed) else {
+        if coarse.follow(&question.root, &tree, self.extent, &answering.closed).is_none() {
             return;
-        };
-        let drawn = draw(surface, &palette, question, false);
+        }
+        let Some((_, surface)) = &coarse.surface else { return };
+        let is_coarsened = coarse.is_coarsened(surface, self.extent);
+        let drawn = Solid { is_coarsened, ..draw(surface, &palette, question, false) };
         self.extent = drawn.bounds;
         let unconstrained = tree.unconstrained();
-        answering.give_late(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }));
-        sew(surface, &BakeStore::new(), question, false, answering);
+        let mut sewing = Duration::ZERO;
+        let mut sew_coarse = |cancel: &Cancel| {
+            let began = Instant::now();
+            let seams = sew(surface, &BakeStore::new(), question, false, cancel);
+            sewing = began.elapsed();
+            seams
+        };
+        let is_quick = self.sewing <= WITH_SOLID;
+        let seams = if is_quick { sew_coarse(&answering.closed) } else { None };
+        answering.give_late(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }, seams));
+        if !is_quick && let Some(seams) = sew_coarse(&answering.cancel) {
+            answering.give(Made::Seams(seams));
+        }
+        self.sewing = sewing;
         if !rests(&answering.cancel) {
             return;
         }
@@ -212,22 +272,25 @@ impl Maker {
             fine.surface = None;
             let tree = self.bakes.compile(&question.root);
             let palette = Palette::new(&question.root, &self.bakes);
-            let Some(cell) = fine.cell(self.extent) else { return };
-            let options = Options { cancel: Some(&answering.cancel), ..Options::default() };
-            let Ok(surface) = Surface::build(&tree, cell, &options) else { return };
-            let drawn = draw(&surface, &palette, question, true);
+            let Some(surface) = fine.build(&tree, self.extent, &answering.cancel) else { return };
+            let is_coarsened = fine.is_coarsened(&surface, self.extent);
+            let drawn = Solid { is_coarsened, ..draw(&surface, &palette, question, true) };
             let unconstrained = tree.unconstrained();
-            answering.give(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }));
-            sew(&surface, &self.bakes, question, true, answering);
+            answering.give(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }, None));
+            let seams = sew(&surface, &self.bakes, question, true, &answering.cancel);
+            seams.into_iter().for_each(|seams| answering.give(Made::Seams(seams)));
             return;
         }
-        let Some(surface) = fine.follow(&question.root, &tree, self.extent, &answering.cancel) else {
+        if fine.follow(&question.root, &tree, self.extent, &answering.cancel).is_none() {
             return;
-        };
-        let drawn = draw(surface, &palette, question, true);
+        }
+        let Some((_, surface)) = &fine.surface else { return };
+        let is_coarsened = fine.is_coarsened(surface, self.extent);
+        let drawn = Solid { is_coarsened, ..draw(surface, &palette, question, true) };
         self.extent = drawn.bounds;
-        answering.give(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }));
-        sew(surface, &BakeStore::new(), question, true, answering);
+        answering.give(Made::Solid(Solid { unconstrained, took: began.elapsed(), ..drawn }, None));
+        let seams = sew(surface, &BakeStore::new(), question, true, &answering.cancel);
+        seams.into_iter().for_each(|seams| answering.give(Made::Seams(seams)));
     }
 }
 
@@ -255,16 +318,25 @@ fn rests(cancel: &Cancel) -> bool {
 }
 
 impl Level {
-    /// The size of cells for a solid this large.
-    fn cell(&self, solid: Aabb) -> Option<CellSize> {
+    /// The usual size of cells for a solid this large, mm.
+    fn usual(&self, solid: Aabb) -> f32 {
         let longest = if solid.is_empty() { 1.0 } else { solid.size().max_element() };
-        CellSize::from_mm((longest / self.cells).max(1e-3)).ok()
+        longest / self.cells
     }
 
-    /// The surface of the tree, in cells of about the right size for a solid this large: what was there, changed where
-    /// the trees differ, or a new one. `None` if it was cancelled.
-    fn follow(&mut self, root: &NodeRef, tree: &Tree, solid: Aabb, cancel: &Cancel) -> Option<&Surface> {
-        let options = Options { cancel: Some(cancel), ..Options::default() };
+    /// The size of cells for a solid this large.
+    fn cell(&self, solid: Aabb) -> Option<CellSize> {
+        CellSize::from_mm((self.coarser * self.usual(solid)).max(1e-3)).ok()
+    }
+
+    /// Whether the cells of a surface are larger than they would be without too many triangles.
+    fn is_coarsened(&self, surface: &Surface, solid: Aabb) -> bool {
+        surface.cell().mm() > SLACK * self.usual(solid)
+    }
+
+    /// Makes the surface that of the tree, in cells of about the right size for a solid this large: what was there, changed
+    /// where the trees differ, or a new one. `None` if it was cancelled.
+    fn follow(&mut self, root: &NodeRef, tree: &Tree, solid: Aabb, cancel: &Cancel) -> Option<()> {
         let wanted = self.cell(solid)?;
         let kept = self.surface.take().filter(|(_, surface)| {
             let ratio = surface.cell().mm() / wanted.mm();
@@ -273,32 +345,64 @@ impl Level {
         let surface = match kept {
             Some((before, mut surface)) => {
                 let dirty = ChangedPlaces::between(&before, root);
-                match surface.update(tree, &dirty, &options) {
-                    Ok(_) => surface,
-                    Err(_) => {
+                match surface.update(tree, &dirty, &self.options(cancel)) {
+                    // Only what has changed is counted on the way.
+                    Ok(_) if surface.triangle_count() <= self.most => surface,
+                    Err(PolygonizeError::Cancelled) => {
                         // An update that was stopped changes nothing, so the next one starts from here again.
                         self.surface = Some((before, surface));
                         return None;
                     }
+                    _ => self.build(tree, solid, cancel)?,
                 }
             }
-            None => Surface::build(tree, wanted, &options).ok()?,
+            None => self.build(tree, solid, cancel)?,
         };
+        // The next one may be finer again; of what is wiggly, finer cells find more than in proportion.
+        let mut expected = surface.triangle_count() as f32 * COARSER.powi(3);
+        while self.coarser > 1.0 && expected < self.most as f32 {
+            self.coarser = (self.coarser / COARSER).max(1.0);
+            expected *= COARSER.powi(3);
+        }
         self.surface = Some((root.clone(), surface));
-        self.surface.as_ref().map(|(_, surface)| surface)
+        Some(())
+    }
+
+    /// A new surface of the tree, in cells as small as they can be without too many triangles. `None` if it was cancelled.
+    fn build(&mut self, tree: &Tree, mut solid: Aabb, cancel: &Cancel) -> Option<Surface> {
+        loop {
+            match Surface::build(tree, self.cell(solid)?, &self.options(cancel)) {
+                Ok(surface) if surface.triangle_count() <= self.most => return Some(surface),
+                Ok(_) => self.coarser *= COARSER,
+                Err(PolygonizeError::TooManyTriangles { .. }) => {
+                    // It may only be larger than the one before.
+                    let measured = solid_box(tree);
+                    if measured.size().max_element() > SLACK * solid.size().max_element() {
+                        solid = measured;
+                    } else {
+                        self.coarser *= COARSER;
+                    }
+                }
+                Err(_) => return None,
+            }
+        }
+    }
+
+    fn options<'a>(&self, cancel: &'a Cancel) -> Options<'a> {
+        Options { cancel: Some(cancel), max_triangles: self.most, ..Options::default() }
     }
 }
 
-/// Makes the seams, if they are wanted, for as long as nothing newer is asked.
+/// Makes the seams, if they are wanted; none if it was cancelled.
 fn sew(
     surface: &Surface,
     bakes: &BakeStore,
     question: &Question,
     is_fine: bool,
-    answering: &Answering<Made>,
-) {
-    if !question.has_seams || answering.cancel.is_cancelled() {
-        return;
+    cancel: &Cancel,
+) -> Option<Seams> {
+    if !question.has_seams || cancel.is_cancelled() {
+        return None;
     }
     let (mesh, normals) = (surface.mesh(), surface.normals());
     let ground = Ground {
@@ -308,9 +412,8 @@ fn sew(
         cell: surface.cell().mm(),
     };
     let owners = Owners::new(&question.root, bakes);
-    if let Some(lines) = seams(&question.root, &owners, ground, &answering.cancel) {
-        answering.give(Made::Seams(Seams { version: question.version, is_fine, lines }));
-    }
+    let lines = seams(&question.root, &owners, ground, cancel)?;
+    Some(Seams { version: question.version, is_fine, lines })
 }
 
 fn draw(surface: &Surface, palette: &Palette, question: &Question, is_fine: bool) -> Solid {
@@ -343,6 +446,7 @@ fn draw(surface: &Surface, palette: &Palette, question: &Question, is_fine: bool
         bounds: Aabb::of_points(mesh.positions.iter().copied()),
         cell: surface.cell().mm(),
         is_fine,
+        is_coarsened: false,
         unconstrained: 0,
         asking: question.asking,
         asked: question.asked,
@@ -405,6 +509,34 @@ mod tests {
     }
 
     #[test]
+    fn seams_move_with_what_is_dragged_and_fade_where_they_take_too_long() {
+        let two = |x: f32| -> NodeRef { union([point([0., 0., 10.], 10.), point([x, 0., 10.], 8.)]).into() };
+        let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
+        let version = maker.ask(&two(12.0), true, Asking::Other, Instant::now());
+        fine(&mut maker, version);
+        let until = Instant::now() + Duration::from_secs(60);
+        let (mut step, mut seen) = (0_u16, 0);
+        while seen < 5 {
+            assert!(Instant::now() < until, "{seen} solids with seams in {step} steps");
+            step += 1;
+            maker.ask(&two(12.0 + 0.01 * f32::from(step)), true, Asking::Drag, Instant::now());
+            if let Some(solid) = maker.ready() {
+                let (lines, shown) = maker.seams(&solid);
+                assert!(!lines.is_empty() && shown == 1.0, "{} lines, {shown}", lines.len());
+                seen += 1;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        // Seams of another solid are gone after a while.
+        let version = maker.ask(&two(20.0), false, Asking::Drag, Instant::now());
+        let solid = fine(&mut maker, version);
+        let (lines, shown) = maker.seams(&solid);
+        assert!(!lines.is_empty() && (0.0..1.0).contains(&shown), "{} lines, {shown}", lines.len());
+        std::thread::sleep(FADES);
+        assert!(maker.seams(&solid).0.is_empty());
+    }
+
+    #[test]
     fn a_solid_that_grows_at_once_to_a_hundred_times_its_size_has_no_more_triangles() {
         let ball = |radius: f32| -> NodeRef { union([point([0., 0., radius], radius)]).into() };
         let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
@@ -415,6 +547,25 @@ mod tests {
             let ratio = fine(&mut maker, version).corners.len() as f32 / small as f32;
             assert!((0.4..2.5).contains(&ratio), "{ratio} times as many for {radius} mm");
         }
+    }
+
+    #[test]
+    fn a_model_with_surfaces_everywhere_is_shown_in_larger_cells_and_a_simple_one_after_it_is_not() {
+        let places = (0..1000_u16).map(|i| [i % 10, i / 10 % 10, i / 100].map(f32::from));
+        let balls = places.map(|[x, y, z]| point([10. * x, 10. * y, 10. * z], 4.8)).collect::<Vec<_>>();
+        let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
+        let version = maker.ask(&union(balls).into(), false, Asking::Other, Instant::now());
+        let solid = fine(&mut maker, version);
+        let triangles = solid.corners.len() / 3;
+        assert!(solid.is_coarsened && triangles <= MOST_TRIANGLES[1], "{triangles}");
+        assert!(triangles > MOST_TRIANGLES[1] / 4, "{triangles}");
+        let mut one = |radius: f32| {
+            let version =
+                maker.ask(&union([point([0.; 3], radius)]).into(), false, Asking::Other, Instant::now());
+            fine(&mut maker, version)
+        };
+        one(50.0);
+        assert!(!one(51.0).is_coarsened);
     }
 
     #[test]

@@ -253,7 +253,7 @@ fn seams_are_made_where_parts_meet_and_only_if_they_are_wanted() {
     let mut screen = screen(None);
     let ball = |x: f32| point([x, 0., 10.], 10.);
     put(&mut screen, blobtree::build::blend([ball(-8.), ball(8.)]));
-    let seams = |screen: &Screen| screen.state().seams().len();
+    let seams = |screen: &Screen| screen.state().seams().0.len();
     assert!(seams(&screen) > 100, "{}", seams(&screen));
     press(&mut screen, "View");
     press(&mut screen, "Seams between parts");

@@ -34,6 +34,12 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         if modeler.solid().is_some_and(|solid| solid.unconstrained > 0) {
             ui.weak("support-free parts are still shown as drawn");
         }
+        if let Some(solid) = modeler.solid().filter(|solid| solid.is_coarsened) {
+            ui.weak(format!("shown in cells of {:.2} mm", solid.cell)).on_hover_text(
+                "In smaller ones, as usual for this size, there would be too many triangles to turn it quickly. \
+                 Exports are as fine as you say.",
+            );
+        }
         if is_wide {
             errands(modeler, ui);
         }

@@ -17,7 +17,7 @@ pub use selecting::meant;
 
 use crate::ground;
 use crate::modeler::Modeler;
-use crate::stage::{Picture, Stage};
+use crate::stage::{Line, Picture, Stage};
 use crate::theme;
 use egui::{CentralPanel, Color32, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::Vec2;
@@ -106,7 +106,14 @@ fn picture(modeler: &Modeler, ui: &Ui, rect: Rect, stage: &mut dyn Stage) {
     let background = theme::background(dark);
     let scale = ui.ctx().pixels_per_point();
     let mut lines = ground::lines(&modeler.settings, dark);
-    lines.extend_from_slice(modeler.seams());
+    let (seams, shown) = modeler.seams();
+    lines.extend(seams.iter().map(|line| {
+        let [r, g, b, a] = line.color;
+        Line { color: [r, g, b, (f32::from(a) * shown) as u8], ..*line }
+    }));
+    if !seams.is_empty() && shown < 1.0 {
+        ui.ctx().request_repaint();
+    }
     let picture = Picture {
         view: modeler.camera.view(modeler.view.screen),
         pixels: [rect.width(), rect.height()].map(|points| ((points * scale).round() as u32).clamp(1, 8192)),
