@@ -1,8 +1,9 @@
 //! Opening what the user names: scenes, meshes, and the meshes that scenes refer to.
 
 use crate::failure::Failure;
-use crate::job::Job;
+use crate::job::{Job, Watch};
 use crate::output::{self, Report};
+use crate::stoppable::Stoppable;
 use blobtree::{Drawing, ImportedMesh, MeshReference, Scene, SceneSources, Template};
 use mesh::io::{Attachments, Format, Loaded, ReadLimits};
 use mesh::{Mesh, MeshDistance};
@@ -44,7 +45,7 @@ pub fn open(
     job: &mut Job,
     report: &mut Report,
 ) -> Result<Input, Failure> {
-    let input = job.stage("read", |_| read(path, prefer))?;
+    let input = job.stage("read", |watch| read(path, prefer, watch))?;
     match input {
         Input::Scene(_) if height.is_some() => {
             Err(Failure::of(path, "a scene, which has its own size; --height scales meshes only"))
@@ -64,7 +65,7 @@ pub fn open(
 ///
 /// Errors: as [`open`], and a mesh without a scene.
 pub fn open_scene(path: &Path, job: &mut Job) -> Result<Scene, Failure> {
-    match job.stage("read", |_| read(path, Prefer::Scene))? {
+    match job.stage("read", |watch| read(path, Prefer::Scene, watch))? {
         Input::Scene(scene) => Ok(scene),
         Input::Mesh(loaded) => {
             let what = format!(
@@ -76,11 +77,12 @@ pub fn open_scene(path: &Path, job: &mut Job) -> Result<Scene, Failure> {
     }
 }
 
-fn read(path: &Path, prefer: Prefer) -> Result<Input, Failure> {
+fn read(path: &Path, prefer: Prefer, watch: &Watch) -> Result<Input, Failure> {
     let mut file = open_file(path).map_err(|what| Failure::of(path, what))?;
     let Some(format) = format_of(path, &mut file).map_err(|what| Failure::of(path, what))? else {
         return read_scene(path, file).map(Input::Scene);
     };
+    let file = Stoppable::new(file, watch.cancel);
     let mut loaded =
         mesh::io::read(file, format, &ReadLimits::default()).map_err(|e| Failure::of(path, e))?;
     match &loaded.attachments.scene {

@@ -21,6 +21,7 @@ mod progress;
 mod render;
 mod resolution;
 mod slicing;
+mod stoppable;
 mod timings;
 mod verbs;
 

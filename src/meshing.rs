@@ -2,8 +2,9 @@
 
 use crate::cli::{ConstraintArgs, ResolutionArgs};
 use crate::failure::Failure;
-use crate::job::Job;
+use crate::job::{Job, Watch};
 use crate::resolution::cell_size;
+use crate::stoppable::Stoppable;
 use crate::{constraint, materials};
 use blobtree::{BakeStore, Node, NodeRef, Scene, Tree, solid_box};
 use mesh::io::{Attachments, Format, TriangleMaterials};
@@ -156,18 +157,20 @@ pub fn write_mesh_as(
     attachments: &Attachments,
     job: &mut Job,
 ) -> Result<(), Failure> {
-    job.stage("verify", |_| verify(source, mesh))?;
-    let bytes = job.stage("encode", |_| {
-        let mut bytes = Cursor::new(Vec::new());
+    job.stage("verify", |watch| verify(source, mesh, watch))?;
+    let bytes = job.stage("encode", |watch| {
+        let mut bytes = Stoppable::new(Cursor::new(Vec::new()), watch.cancel);
         mesh::io::write(&mut bytes, mesh, format, attachments).map_err(|e| Failure::of(output, e))?;
-        Ok(bytes.into_inner())
+        Ok(bytes.into_inner().into_inner())
     })?;
     job.write(output, &bytes)
 }
 
-/// Errors: a mesh that does not bound a solid.
-fn verify(source: &Path, mesh: &Mesh) -> Result<(), Failure> {
-    if mesh.is_closed_manifold() && mesh.volume() > 0.0 {
+/// Errors: a mesh that does not bound a solid; [`Failure::Interrupted`].
+fn verify(source: &Path, mesh: &Mesh, watch: &Watch) -> Result<(), Failure> {
+    let cancelled = || watch.cancel.is_cancelled();
+    let is_closed = mesh.is_closed_manifold_unless(&cancelled).ok_or(Failure::Interrupted)?;
+    if is_closed && mesh.volume() > 0.0 {
         return Ok(());
     }
     let validity = mesh.validity(SelfIntersections::Skip);

@@ -28,22 +28,39 @@ pub(crate) struct Edge<'a> {
     pub halves: &'a [Half],
 }
 
+/// Into so many tables edges are shared, where work on them may be stopped in between.
+const SHARES: u32 = 64;
+
+/// All sides of all sound triangles.
+fn halves(mesh: &Mesh) -> impl Iterator<Item = Half> {
+    let sound = |t: &[u32; 3]| mesh.corners(*t).is_some() && !is_collapsed(*t);
+    (0..=u32::MAX).zip(&mesh.triangles).filter(move |(_, t)| sound(t)).flat_map(|(triangle, &t)| {
+        [0u8, 1, 2].map(|side| {
+            let (from, to) = (t[usize::from(side)], t[(usize::from(side) + 1) % 3]);
+            Half { ends: [from.min(to), from.max(to)], triangle, side, forward: from < to }
+        })
+    })
+}
+
 impl EdgeTable {
     /// Sorts the sides; O(n log n). Triangles beyond the 2³²nd are not seen.
     pub fn new(mesh: &Mesh) -> Self {
-        let sound = |t: &[u32; 3]| mesh.corners(*t).is_some() && !is_collapsed(*t);
-        let mut halves: Vec<Half> = (0..=u32::MAX)
-            .zip(&mesh.triangles)
-            .filter(|(_, t)| sound(t))
-            .flat_map(|(triangle, &t)| {
-                [0u8, 1, 2].map(|side| {
-                    let (from, to) = (t[usize::from(side)], t[(usize::from(side) + 1) % 3]);
-                    Half { ends: [from.min(to), from.max(to)], triangle, side, forward: from < to }
-                })
-            })
-            .collect();
-        halves.par_sort_unstable();
-        Self { halves }
+        Self { halves: halves(mesh).collect() }.sorted()
+    }
+
+    /// Some tables, not sorted yet, which share all edges among them: those whose first vertices are neighbours stay
+    /// together.
+    pub fn in_shares(mesh: &Mesh) -> Vec<Self> {
+        let width = (mesh.positions.len() as u32).div_ceil(SHARES).max(1);
+        let mut shares: Vec<Self> = (0..SHARES).map(|_| Self { halves: Vec::new() }).collect();
+        halves(mesh).for_each(|half| shares[(half.ends[0] / width) as usize].halves.push(half));
+        shares
+    }
+
+    /// In the order that everything else needs.
+    pub fn sorted(mut self) -> Self {
+        self.halves.par_sort_unstable();
+        self
     }
 
     /// The edges in ascending order of their vertices.

@@ -14,6 +14,7 @@ use crate::components::{Body, Components, DisjointSets, bodies_of, components_of
 use crate::crossings::Crossings;
 use crate::edges::{EdgeTable, is_collapsed};
 use crate::winding::Winding;
+use rayon::prelude::*;
 
 /// Places listed of each kind of finding; the counts go on.
 pub const MOST_PLACES: usize = 100;
@@ -209,10 +210,20 @@ impl Mesh {
     /// Whether the mesh has triangles, all sound, and every edge has exactly two running in opposite directions.
     /// O(n log n).
     pub fn is_closed_manifold(&self) -> bool {
+        self.is_closed_manifold_unless(&|| false).expect("nobody stops it")
+    }
+
+    /// The same; none if `cancelled` says so meanwhile.
+    pub fn is_closed_manifold_unless(&self, cancelled: &(dyn Fn() -> bool + Sync)) -> Option<bool> {
         let sound = |t: &[u32; 3]| self.corners(*t).is_some() && !is_collapsed(*t);
-        !self.triangles.is_empty()
-            && self.triangles.iter().all(sound)
-            && EdgeTable::new(self).iter().all(|e| e.halves.len() == 2 && e.balance() == 0)
+        if self.triangles.is_empty() || !self.triangles.iter().all(sound) {
+            return (!cancelled()).then_some(false);
+        }
+        let shares = EdgeTable::in_shares(self);
+        let is_closed = |edges: &EdgeTable| edges.iter().all(|e| e.halves.len() == 2 && e.balance() == 0);
+        let closed =
+            shares.into_par_iter().map(|share| !cancelled() && is_closed(&share.sorted())).all(|is| is);
+        (!cancelled()).then_some(closed)
     }
 
     /// Counts and places everything that is wrong. O(n log n) for ordinary meshes; no input makes it panic.

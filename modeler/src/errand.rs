@@ -9,6 +9,9 @@ use std::thread;
 /// Trees are walked by recursion; as deep as scenes may be, this is plenty.
 const STACK_BYTES: usize = 32 << 20;
 
+/// What is told of an errand that has been stopped and has not come to its end yet.
+pub const STOPPING: &str = "stopping";
+
 /// Why an errand has no result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Undone {
@@ -90,6 +93,13 @@ struct Errand {
 }
 
 impl Errand {
+    fn progress(&self) -> Progress {
+        match self.watch.cancel.is_cancelled() {
+            true => Progress { step: STOPPING.into(), share: None },
+            false => self.watch.progress(),
+        }
+    }
+
     fn start(&mut self, wake: Arc<dyn Fn() + Send + Sync>) {
         let (sender, receiver) = mpsc::channel();
         let State::Waiting(work) = std::mem::replace(&mut self.state, State::Running(receiver)) else {
@@ -185,7 +195,7 @@ impl Errands {
 
     /// What the user reads of each, the oldest first.
     pub fn told(&self) -> impl Iterator<Item = (&str, Progress)> {
-        self.list.iter().map(|errand| (&*errand.title, errand.watch.progress()))
+        self.list.iter().map(|errand| (&*errand.title, errand.progress()))
     }
 
     /// Stops one, by its place.

@@ -179,3 +179,42 @@ fn drawing(path: &Path) -> Result<Sketch, Failure> {
     let strokes = stroke::read(&bytes, format, &DoodleChoice::default()).map_err(|e| Failure::of(path, e))?;
     Ok(Sketch::from_strokes(&strokes))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn a_press_of_stop_is_heard_at_any_moment_of_an_export() {
+        let (_, text) = EXAMPLES[6];
+        let vase = Scene::from_bytes(text.as_bytes(), &mut Beside(Path::new(""))).expect("legal");
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("vase.3mf");
+        let options = ExportOptions { cell_mm: Some(0.3), ..ExportOptions::default() };
+        let export = |watch: &Watch| Files::default().export(&vase, &path, &options, watch);
+        let start = Instant::now();
+        export(&Watch::default()).expect("there is room");
+        let whole = start.elapsed();
+        std::fs::remove_file(&path).expect("it was written");
+        for share in [0.1, 0.4, 0.6, 0.75, 0.9] {
+            let (watch, stopped) = (Watch::default(), Mutex::new(Instant::now()));
+            let result = std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    std::thread::sleep(whole.mul_f64(share));
+                    *stopped.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+                    watch.cancel.cancel();
+                });
+                let result = export(&watch);
+                let deaf = stopped.lock().unwrap_or_else(PoisonError::into_inner).elapsed();
+                assert!(deaf < Duration::from_millis(500), "not heard for {deaf:?} at {share}");
+                result
+            });
+            // It may have been quicker this time.
+            if result.is_err() {
+                assert_eq!((result, path.exists()), (Err(Undone::Stopped), false), "at {share}");
+            }
+            let _ = std::fs::remove_file(&path);
+        }
+    }
+}

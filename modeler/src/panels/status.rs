@@ -1,8 +1,8 @@
 //! The line below: what is on the table, and what is going on.
 
-use crate::errand::Progress;
+use crate::errand::{Progress, STOPPING};
 use crate::modeler::Modeler;
-use egui::{Layout, ProgressBar, Ui};
+use egui::{Button, Layout, ProgressBar, Ui};
 use std::time::Duration;
 
 /// How often progress is shown anew.
@@ -76,7 +76,7 @@ fn errands(modeler: &mut Modeler, ui: &mut Ui) {
                 ui.spinner();
             }
         }
-        if ui.small_button("Stop").clicked() {
+        if ui.add_enabled(step != STOPPING, Button::new("Stop").small()).clicked() {
             stopped = Some(i);
         }
         ui.ctx().request_repaint_after(TICK);
