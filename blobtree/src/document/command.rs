@@ -4,7 +4,7 @@ use crate::node::{Color, Node, NodePath, NodeRef, Shape};
 use crate::operator::Operator;
 use crate::scene::SceneError;
 use crate::support_free::{BrushStroke, SupportFree};
-use crate::warp::Warp;
+use crate::warp::{Transform, Warp};
 use std::sync::Arc;
 
 /// One edit. Every path and index means the tree as it is before the edit.
@@ -245,6 +245,9 @@ impl Command {
             Self::WrapInOperator { path, operator } => {
                 format!("Put {} into {}", at(path), operator.type_name())
             }
+            Self::WrapInWarp { path, warp: Warp::Transform(to) } => {
+                format!("{} {}", placed(&Transform::default(), to), at(path))
+            }
             Self::WrapInWarp { path, warp } => format!("Put {} into {}", at(path), warp.type_name()),
             Self::WrapInSupportFree { path, .. } => format!("Make {} support-free", at(path)),
             Self::Unwrap { path } => format!("Unwrap {}", at(path)),
@@ -252,7 +255,13 @@ impl Command {
                 Some(node) if node.type_name() != shape.type_name() => {
                     format!("Turn {} into {}", called(node), shape.type_name())
                 }
-                _ => format!("Change {}", at(path)),
+                node => match (node.map(|node| &node.shape), shape) {
+                    (Some(Shape::Warp(Warp::Transform(from), part)), NewShape::Warp(Warp::Transform(to))) => {
+                        let name = node.and_then(|node| node.name.clone());
+                        format!("{} {}", placed(from, to), name.unwrap_or_else(|| called(part)))
+                    }
+                    _ => format!("Change {}", at(path)),
+                },
             },
             Self::AddStroke { path, stroke } => {
                 format!("Brush {} ({})", at(path), stroke.brush.name().replace('_', " "))
@@ -285,6 +294,17 @@ fn joining(old: &NodeRef, node: &NodeRef) -> Option<String> {
         Operator::Intersection | Operator::BlendIntersection(_) => format!("Keep what is in {}", called(new)),
         Operator::Blend(_) | Operator::GradientBlend | Operator::Sum => format!("Blend with {}", called(new)),
     })
+}
+
+/// What a change of place is called. Turning and sizing about a point move, too.
+fn placed(from: &Transform, to: &Transform) -> &'static str {
+    if from.rotate_degrees != to.rotate_degrees {
+        "Turn"
+    } else if from.scale != to.scale {
+        "Size"
+    } else {
+        "Move"
+    }
 }
 
 /// A node's name, else its type.

@@ -284,6 +284,23 @@ fn steps_have_names_for_the_history() {
 }
 
 #[test]
+fn what_a_hand_does_to_the_place_of_a_part_is_named_by_that() {
+    let mut document = document();
+    let place = |x: f32, turned: f32, size: f32| Transform {
+        translate: Vec3::new(x, 0.0, 0.0),
+        rotate_degrees: Vec3::new(0.0, 0.0, turned),
+        scale: Vec3::splat(size),
+    };
+    let wrap = Command::WrapInWarp { path: path("/0"), warp: Warp::Transform(place(2.0, 0.0, 1.0)) };
+    document.apply(wrap).expect("legal");
+    for (x, turned, size) in [(3.0, 0.0, 1.0), (4.0, 15.0, 1.0), (5.0, 15.0, 2.0)] {
+        let shape = NewShape::Warp(Warp::Transform(place(x, turned, size)));
+        document.apply(Command::SetShape { path: path("/0"), shape }).expect("legal");
+    }
+    assert_eq!(document.undo_names().collect::<Vec<_>>(), ["Size a", "Turn a", "Move a", "Move a"]);
+}
+
+#[test]
 fn a_node_that_joins_another_is_named_by_what_it_does() {
     for (joined, name) in [
         (Operator::Union, "Add lid"),
