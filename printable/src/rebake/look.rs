@@ -48,7 +48,7 @@ impl Look {
         let Some(outlines) = sliced(outlines)? else { return Ok(None) };
         let reach = f64::from(rule.layer_height) * f64::from(rule.overhang_degrees).to_radians().tan();
         let reach = reach + TOLERANCE_MM;
-        let hanging = Hanging::new(&outlines, reach);
+        let hanging = Hanging::new(rebaker, &outlines, reach)?;
         let stale = vec![Vec::new(); outlines.layers.len()];
         Ok(Some(Self { surface, height, reach, outlines, hanging, stale }))
     }
@@ -85,7 +85,7 @@ impl Look {
         if moved > SAME_BOTTOM_MM {
             let outlines = Outlines::new(&mesh, self.height, &watch(rebaker));
             let Some(outlines) = sliced(outlines)? else { return Ok(false) };
-            self.hanging = Hanging::new(&outlines, self.reach);
+            self.hanging = Hanging::new(rebaker, &outlines, self.reach)?;
             self.stale = vec![Vec::new(); outlines.layers.len()];
             self.outlines = outlines;
             return Ok(true);
@@ -95,14 +95,16 @@ impl Look {
         if sliced(self.outlines.renew(&mesh, &stale, &watch(rebaker)))?.is_none() {
             return Ok(false);
         }
-        self.hanging.renew(&self.outlines, &self.stale);
+        self.hanging.renew(rebaker, &self.outlines, &self.stale)?;
         self.stale.iter_mut().for_each(Vec::clear);
         Ok(true)
     }
 
     /// All that must go; places of a piece are no farther apart than `pitch`, mm.
-    pub fn pieces(&self, pitch: f64) -> Vec<Piece> {
-        self.hanging.pieces(&self.outlines, pitch)
+    ///
+    /// Errors: [`BakeError::Cancelled`].
+    pub fn pieces(&self, rebaker: &Rebaker, pitch: f64) -> Result<Vec<Piece>, BakeError> {
+        self.hanging.pieces(rebaker, &self.outlines, pitch)
     }
 }
 
@@ -164,7 +166,7 @@ mod tests {
                 |tree: &Tree| Look::new(&rebaker, cell, rule, tree).expect("no cancel").expect("solid");
             let mut kept = fresh(&tree);
             for round in 0..ROUNDS {
-                let pieces = kept.pieces(dents.pitch());
+                let pieces = kept.pieces(&rebaker, dents.pitch()).expect("no cancel");
                 assert!(round > 0 || rule.mode == SupportMode::Grow || !pieces.is_empty(), "nothing hangs");
                 if pieces.is_empty() {
                     break;
@@ -189,8 +191,13 @@ mod tests {
                     let apart = kept - fresh;
                     assert!(apart.abs() < 1e-4, "round {round}, layer {layer}: {apart} mm² apart");
                 }
-                let hanging =
-                    |look: &Look| -> f64 { look.pieces(dents.pitch()).iter().map(|piece| piece.area).sum() };
+                let hanging = |look: &Look| -> f64 {
+                    look.pieces(&rebaker, dents.pitch())
+                        .expect("no cancel")
+                        .iter()
+                        .map(|piece| piece.area)
+                        .sum()
+                };
                 let apart = hanging(&kept) - hanging(&fresh);
                 assert!(apart.abs() < 1e-4, "round {round}: {apart} mm² more hang");
             }

@@ -25,13 +25,14 @@ pub(super) fn settle(
     let mut tree = node(&bake);
     let Some(mut look) = Look::new(rebaker, cell, rule, &tree)? else { return Ok(bake) };
     for _ in 0..ROUNDS {
-        let pieces = look.pieces(dents.pitch());
+        let pieces = look.pieces(rebaker, dents.pitch())?;
         if pieces.is_empty() {
             break;
         }
         let area: f64 = pieces.iter().map(|piece| piece.area).sum();
         bake.removed_mm3 += area * f64::from(rule.layer_height);
         let dirty = dents.press(&tree, &pieces);
+        rebaker.go_on()?;
         // Dents too far apart for one image are left out.
         let Ok(image) = dents.image() else { return Ok(bake) };
         bake.dents = Some(Arc::new(image));

@@ -56,6 +56,7 @@ pub(super) fn brush(
         let dabs = dabs_of(stroke)
             .map_err(|e| BakeError::Impossible(format!("`strokes[{number}]` cannot be replayed: {e}")))?;
         let shape = Shape::of(&stroke.tip);
+        rebaker.go_on()?;
         let paths = (stroke.brush == BrushKind::AddGrow).then(|| PathMap::new(&canvas.value));
         let materials = [stroke.material, stroke.grown_material];
         let hand =
@@ -74,6 +75,7 @@ pub(super) fn brush(
     }
     let ends = [[region.low[0], region.low[1], -2], region.high()];
     let image = |bricks: Vec<VoxelBrick>, beyond: Beyond| {
+        rebaker.go_on()?;
         let image = VoxelImage::new(region.spacing, TOP, beyond, ends, &bricks);
         let image = image.map_err(|e| BakeError::Impossible(e.to_string()));
         (!bricks.is_empty()).then_some(image).transpose().map(|image| image.map(Arc::new))

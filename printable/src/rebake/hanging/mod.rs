@@ -9,10 +9,12 @@ mod tile;
 pub(super) use piece::Piece;
 pub(super) use tile::Tile;
 
+use super::Rebaker;
 use crate::slices::clip::{Clipper, Region, thinned};
 use crate::slices::grid::Grid;
 use crate::slices::outline::{Outline, Outlines};
 use crate::slices::rect::Rect;
+use blobtree::BakeError;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -58,8 +60,8 @@ struct Pair<'a> {
 impl Hanging {
     /// What lies farther than `reach`, mm, from the layer below.
     ///
-    /// Promises: the same for any number of threads.
-    pub fn new(outlines: &Outlines, reach: f64) -> Self {
+    /// Promises: the same for any number of threads. Errors: [`BakeError::Cancelled`].
+    pub fn new(rebaker: &Rebaker, outlines: &Outlines, reach: f64) -> Result<Self, BakeError> {
         let reach = Reach { mm: reach, grid: outlines.grid, tiling: Tiling::new(&outlines.grid, reach) };
         let mut hanging = Self { reach, lacks: vec![Lacks::default(); outlines.layers.len()] };
         let all = |layer: &Vec<Outline>| {
@@ -68,8 +70,8 @@ impl Hanging {
             Rect::of_points(&points).map_or(Vec::new(), |rect| reach.tiling.tiles(&rect).collect())
         };
         let all: Vec<Vec<Tile>> = outlines.layers.iter().map(all).collect();
-        hanging.look(outlines, &all);
-        hanging
+        hanging.look(rebaker, outlines, &all)?;
+        Ok(hanging)
     }
 
     /// The tile of a place, mm.
@@ -78,7 +80,14 @@ impl Hanging {
     }
 
     /// Follows the outlines after a change of each layer in these tiles.
-    pub fn renew(&mut self, outlines: &Outlines, changed: &[Vec<Tile>]) {
+    ///
+    /// Errors: [`BakeError::Cancelled`]; then what is known is of no use.
+    pub fn renew(
+        &mut self,
+        rebaker: &Rebaker,
+        outlines: &Outlines,
+        changed: &[Vec<Tile>],
+    ) -> Result<(), BakeError> {
         let stale = |layer: usize| {
             let below = layer.checked_sub(1).map_or(&[][..], |below| &changed[below]);
             let mut tiles: Vec<Tile> = below.iter().flat_map(|tile| tile.around()).collect();
@@ -88,34 +97,43 @@ impl Hanging {
             tiles
         };
         let stale: Vec<Vec<Tile>> = (0..changed.len()).map(stale).collect();
-        self.look(outlines, &stale);
+        self.look(rebaker, outlines, &stale)
     }
 
     /// Looks at these tiles of each layer, in ascending order.
-    fn look(&mut self, outlines: &Outlines, tiles: &[Vec<Tile>]) {
+    fn look(&mut self, rebaker: &Rebaker, outlines: &Outlines, tiles: &[Vec<Tile>]) -> Result<(), BakeError> {
         let reach = self.reach;
         let look = |clipper: &mut Clipper, (above, (lacks, tiles)): (usize, (&mut Lacks, &Vec<Tile>))| {
+            rebaker.go_on()?;
             if tiles.is_empty() {
-                return;
+                return Ok(());
             }
             let [below, layer] = [above, above + 1].map(|layer| outlines.layers[layer].as_slice());
             let pair = Pair { reach: &reach, layer, below, gone: &[] };
             lacks.islands = pair.islands(clipper, |_| true);
             lacks.renew(pair.beyond(clipper, tiles));
+            Ok(())
         };
         let above = self.lacks.iter_mut().zip(tiles).skip(1).collect::<Vec<_>>();
-        above.into_par_iter().enumerate().for_each_init(Clipper::new, look);
+        above.into_par_iter().enumerate().try_for_each_init(Clipper::new, look)
     }
 
     /// All that must go for every layer to lie within reach of what is left of the one below, from the bottom up.
     ///
     /// - **In:** `pitch`, how far apart places of a piece may be, mm.
     /// - **Promises:** the same for any number of threads.
-    pub fn pieces(&self, outlines: &Outlines, pitch: f64) -> Vec<Piece> {
+    /// - **Errors:** [`BakeError::Cancelled`].
+    pub fn pieces(
+        &self,
+        rebaker: &Rebaker,
+        outlines: &Outlines,
+        pitch: f64,
+    ) -> Result<Vec<Piece>, BakeError> {
         let mut clipper = Clipper::new();
         let mut found = Vec::new();
         let mut gone: Vec<Region> = Vec::new();
         for layer in 1..self.lacks.len() {
+            rebaker.go_on()?;
             // Where something goes, the layer above lacks more.
             let lacks = self.without(outlines, layer, &gone, &mut clipper);
             let pieces = lacks.regions(&mut clipper);
@@ -127,7 +145,7 @@ impl Hanging {
         let piece = |(layer, region, island): &(usize, Region, bool)| {
             Piece::new(region, *island, outlines.planes.heights[*layer], &self.reach.grid, pitch)
         };
-        found.par_iter().map(piece).collect()
+        Ok(found.par_iter().map(piece).collect())
     }
 
     /// What a layer lacks if these regions of the one below are gone.

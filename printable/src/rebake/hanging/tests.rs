@@ -40,9 +40,17 @@ fn hole(mut ring: Vec<DVec2>) -> Vec<DVec2> {
     ring
 }
 
+fn look(outlines: &Outlines) -> Hanging {
+    Hanging::new(&Rebaker::new(), outlines, REACH).expect("no cancel")
+}
+
+fn found(hanging: &Hanging, outlines: &Outlines) -> Vec<Piece> {
+    hanging.pieces(&Rebaker::new(), outlines, 0.2).expect("no cancel")
+}
+
 fn pieces(layers: &[Vec<Vec<DVec2>>]) -> Vec<Piece> {
     let outlines = outlines(layers);
-    Hanging::new(&outlines, REACH).pieces(&outlines, 0.2)
+    found(&look(&outlines), &outlines)
 }
 
 fn area(pieces: &[Piece], island: bool) -> f64 {
@@ -119,7 +127,7 @@ fn following_a_change_finds_what_a_fresh_look_finds() {
     let layer = |rng: &mut fastrand::Rng| (0..12).map(|_| dot(rng)).collect::<Vec<_>>();
     let mut layers: Vec<_> = (0..5).map(|_| layer(&mut rng)).collect();
     let before = outlines(&layers);
-    let mut kept = Hanging::new(&before, REACH);
+    let mut kept = look(&before);
     for _ in 0..4 {
         let changed = rng.usize(..layers.len());
         let number = rng.usize(..12);
@@ -131,7 +139,7 @@ fn following_a_change_finds_what_a_fresh_look_finds() {
             let points: Vec<_> = ring.iter().map(|p| after.grid.point(*p)).collect();
             tiles[changed].extend(kept.reach.tiling.tiles(&Rect::of_points(&points).expect("points")));
         }
-        kept.renew(&after, &tiles);
-        assert_eq!(kept.pieces(&after, 0.2), Hanging::new(&after, REACH).pieces(&after, 0.2));
+        kept.renew(&Rebaker::new(), &after, &tiles).expect("no cancel");
+        assert_eq!(found(&kept, &after), found(&look(&after), &after));
     }
 }
