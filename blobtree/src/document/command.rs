@@ -239,7 +239,10 @@ impl Command {
             Self::Replace { path, node } => {
                 let old = path.find(root);
                 let joined = old.and_then(|old| joining(old, node));
-                joined.unwrap_or_else(|| format!("Replace {} by {}", at(path), called(node)))
+                joined.unwrap_or_else(|| match (at(path), called(node)) {
+                    (old, new) if old == new => format!("Change {old}"),
+                    (old, new) => format!("Replace {old} by {new}"),
+                })
             }
             Self::Move { from, .. } => format!("Move {} in the tree", at(from)),
             Self::WrapInOperator { path, operator } => {
@@ -256,9 +259,8 @@ impl Command {
                     format!("Turn {} into {}", called(node), shape.type_name())
                 }
                 node => match (node.map(|node| &node.shape), shape) {
-                    (Some(Shape::Warp(Warp::Transform(from), part)), NewShape::Warp(Warp::Transform(to))) => {
-                        let name = node.and_then(|node| node.name.clone());
-                        format!("{} {}", placed(from, to), name.unwrap_or_else(|| called(part)))
+                    (Some(Shape::Warp(Warp::Transform(from), _)), NewShape::Warp(Warp::Transform(to))) => {
+                        format!("{} {}", placed(from, to), at(path))
                     }
                     _ => format!("Change {}", at(path)),
                 },
@@ -307,8 +309,12 @@ fn placed(from: &Transform, to: &Transform) -> &'static str {
     }
 }
 
-/// A node's name, else its type.
+/// A node's name, else its type; a warp without a name is called after what it bends.
 fn called(node: &Node) -> String {
+    let mut node = node;
+    while let (None, Shape::Warp(_, below)) = (&node.name, &node.shape) {
+        node = below;
+    }
     node.name.clone().unwrap_or_else(|| node.type_name().replace('_', " "))
 }
 

@@ -315,7 +315,7 @@ fn a_node_that_joins_another_is_named_by_what_it_does() {
         document
             .apply(Command::Replace { path: path("/1"), node: lid.translate([1., 0., 0.]).into() })
             .expect("legal");
-        assert_eq!(document.undo_names().collect::<Vec<_>>(), ["Replace lid by transform", name]);
+        assert_eq!(document.undo_names().collect::<Vec<_>>(), ["Change lid", name]);
     }
 }
 
