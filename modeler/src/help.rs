@@ -11,8 +11,8 @@ const STROKES: [(&str, &str); 6] = [
     ("Scribble over a stroke", "rub it out"),
     ("Scribble over what is selected", "remove it"),
     ("Circle twice around a stroke", "make it smoother"),
-    ("Quick stroke to the left", "undo"),
-    ("Line straight up", "select the parent"),
+    ("Quick stroke to the left", "take back the last stroke"),
+    ("Quick line straight up", "select the parent"),
     ("Stroke across a button", "press it"),
 ];
 

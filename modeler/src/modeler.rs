@@ -103,6 +103,9 @@ pub struct Modeler {
     asked: Option<(NodeRef, bool)>,
     thinker: Thinker,
     portraits: Portraits,
+    /// Pictures of the nodes that show in the tree, and which those are.
+    pub(crate) parts: Portraits,
+    parts_shown: Vec<NodeRef>,
     /// Called when a background thread has something to show.
     wake: Arc<dyn Fn() + Send + Sync>,
     /// Where sessions are kept; nowhere in tests that do not want them.
@@ -159,6 +162,8 @@ impl Modeler {
             asked: None,
             thinker: Thinker::start(wake.clone())?,
             portraits: Portraits::default(),
+            parts: Portraits::default(),
+            parts_shown: Vec::new(),
             wake,
             sessions,
         })
@@ -220,7 +225,8 @@ impl Modeler {
         let sketched = self.pad.sketch().is_empty() || self.pad.expectations.as_ref().is_some_and(is_newest);
         let asked = self.is_asked();
         let seen = self.lens.as_ref().is_none_or(Lens::is_at_rest);
-        let looked = seen && self.pointing.is_at_rest() && self.lowest.is_at_rest();
+        let drawn = self.parts.has(&self.parts_shown);
+        let looked = seen && drawn && self.pointing.is_at_rest() && self.lowest.is_at_rest();
         sketched && asked && looked && self.errands.is_empty() && self.solids.is_done(self.solid.as_deref())
     }
 

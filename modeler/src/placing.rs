@@ -68,7 +68,12 @@ pub fn mirrored(root: &NodeRef, path: &NodePath) -> Option<Command> {
     if !matches!(above.shape, Shape::Operator(..)) {
         return None;
     }
-    let world_from_parent = world_from_node(root, &parent)?;
+    let copy = mirror(path.find(root)?, world_from_node(root, &parent)?);
+    Some(Command::Insert { parent, index: index + 1, node: copy.into() })
+}
+
+/// A node mirrored at x = 0 of the world.
+pub fn mirror(node: &NodeRef, world_from_parent: Affine3A) -> Node {
     let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
     let map = world_from_parent.inverse() * mirror * world_from_parent;
     let (linear, to) = (Mat3::from(map.matrix3), map.translation);
@@ -77,8 +82,7 @@ pub fn mirrored(root: &NodeRef, path: &NodePath) -> Option<Command> {
         [row.x, row.y, row.z, to[axis]]
     };
     let warp = Warp::Affine(AffineMap { rows: [row(0), row(1), row(2)] });
-    let copy = Node::new(Shape::Warp(warp, path.find(root)?.clone()));
-    Some(Command::Insert { parent, index: index + 1, node: copy.into() })
+    Node::new(Shape::Warp(warp, node.clone()))
 }
 
 /// A motion of the world as it is seen in the space of the parent of the node at `path`.

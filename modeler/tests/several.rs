@@ -174,6 +174,21 @@ fn all_selected_parts_are_copied_muted_put_together_and_removed_in_one_step_each
 }
 
 #[test]
+fn the_whole_model_is_mirrored_if_all_of_it_is_selected() {
+    let mut screen = screen(None);
+    put(&mut screen, union([point([20., 0., 10.], 10.)]).subtract(point([24., 0., 10.], 4.)));
+    screen.state_mut().select(Some(NodePath::default()));
+    screen.state_mut().mirror_selected();
+    settle(&mut screen);
+    let both = bounds(&screen);
+    assert!((both.min.x + 30.0).abs() < 0.1 && (both.max.x - 30.0).abs() < 0.1, "{both:?}");
+    assert_eq!(
+        (screen.state().bench.document().undo_names().count(), selected(&screen)),
+        (1, paths(&["/1"]))
+    );
+}
+
+#[test]
 fn several_parts_are_mirrored_together() {
     let mut screen = balls();
     screen.state_mut().select_all(paths(&["/1", "/2"]));

@@ -60,6 +60,18 @@ fn all_selected_parts_are_dragged_in_one_step_and_others_alone() {
 }
 
 #[test]
+fn nodes_that_show_in_the_tree_have_pictures() {
+    let mut screen = balls();
+    // The root, four balls, and the group with two.
+    let drawn = |screen: &Screen| screen.state().pictures_in_tree();
+    assert_eq!(drawn(&screen), 8);
+    press(&mut screen, "Panels");
+    assert_eq!(drawn(&screen), 0);
+    press(&mut screen, "Panels");
+    assert_eq!(drawn(&screen), 8);
+}
+
+#[test]
 fn what_is_dropped_on_itself_or_below_itself_stays() {
     let mut screen = balls();
     let before = outline(&screen.state().bench.scene().root);

@@ -1,10 +1,10 @@
 //! What is done to the selected parts: one of them or several, always as one step.
 
-use super::Modeler;
+use super::{Modeler, added};
 use crate::placing::{self, Motion};
 use crate::several;
-use blobtree::{Aabb, Command, NodePath, Operator, Shape};
-use glam::{Vec2, Vec3};
+use blobtree::{Aabb, Command, NodePath, NodeRef, Operator, Shape};
+use glam::{Affine3A, Vec2, Vec3};
 
 /// Why a part cannot have a copy.
 const NOTHING_BESIDE: &str = "Only parts of a union, a blend or a cut can have a copy beside them.";
@@ -57,15 +57,40 @@ impl Modeler {
 
     /// Puts a copy of what is selected beside it, and selects the copies.
     pub fn duplicate_selected(&mut self) {
-        let found = several::duplicate(&self.bench.scene().root, self.bench.selection());
+        let root = &self.bench.scene().root;
+        let found = self.whole_beside(NodeRef::clone);
+        let found = found.or_else(|| several::duplicate(root, self.bench.selection()));
         self.put_beside(found);
     }
 
     /// Puts a mirrored copy of what is selected on the other side of the middle, and selects the copies.
     pub fn mirror_selected(&mut self) {
         let root = &self.bench.scene().root;
-        let found = several::beside(root, self.bench.selection(), |path| placing::mirrored(root, path));
+        let found = self.whole_beside(|root| placing::mirror(root, Affine3A::IDENTITY).into());
+        let mirrored = |path: &NodePath| placing::mirrored(root, path);
+        let found = found.or_else(|| several::beside(root, self.bench.selection(), mirrored));
         self.put_beside(found);
+    }
+
+    /// What puts a copy of all there is beside it, if all is selected, and where that then is.
+    fn whole_beside(&self, copy: impl Fn(&NodeRef) -> NodeRef) -> Option<(Command, Vec<NodePath>)> {
+        let root = &self.bench.scene().root;
+        let is_whole = self.bench.selected()?.0.is_empty() && !root.children().is_empty();
+        let (command, path) = is_whole.then(|| added(root, copy(root)))?;
+        Some((command, vec![path]))
+    }
+
+    /// These nodes show in the tree: their pictures are drawn as soon as the model is.
+    pub(crate) fn show_parts(&mut self, nodes: Vec<NodeRef>, ctx: &egui::Context) {
+        self.parts_shown = nodes;
+        if self.solids.is_done(self.solid.as_deref()) {
+            self.parts.get(&self.parts_shown, ctx, &self.wake);
+        }
+    }
+
+    /// How many nodes show in the tree with a picture.
+    pub fn pictures_in_tree(&self) -> usize {
+        self.parts_shown.iter().filter(|node| self.parts.of(node).is_some()).count()
     }
 
     /// What is moved if this node is dragged in the tree: all that is selected, if it is one of them.

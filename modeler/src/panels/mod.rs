@@ -37,6 +37,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
     if !has_panels {
         let strip = Panel::bottom("strip").exact_size(suggestions::strip_height(ui));
         strip.show(ui, |ui| suggestions::strip(modeler, ui));
+        modeler.show_parts(Vec::new(), ui.ctx());
         return;
     }
     let left_handed = modeler.settings.left_handed;

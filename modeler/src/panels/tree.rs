@@ -5,17 +5,27 @@ use crate::modeler::Modeler;
 use crate::seams;
 use crate::settings::Tool;
 use crate::theme;
-use blobtree::{Color, Node, NodePath, NodeRef, Operator, Shape, Sharpness, Warp};
+use blobtree::{AffineMap, Color, Node, NodePath, NodeRef, Operator, Shape, Sharpness, Warp};
 use egui::{
     Color32, DragAndDrop, FontId, Id, LayerId, Order, Rect, Response, RichText, ScrollArea, Sense, Ui,
     collapsing_header,
 };
+use glam::Vec3;
 
 /// Nodes below which branches begin closed.
 const OPEN_UP_TO: usize = 40;
 
-/// How far lines are indented at most, in levels.
+/// How far lines are indented for each level, points.
+const INDENT: f32 = 12.0;
+
+/// How far at most, in levels.
 const DEEPEST: usize = 12;
+
+/// The size of a node's picture, points.
+const PICTURE: egui::Vec2 = egui::vec2(24.0, 18.0);
+
+/// Most pictures at a time.
+const MOST_PICTURES: usize = 100;
 
 /// What is done with a node that is dragged onto another.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +38,8 @@ struct Done {
     /// Whether it is selected with what is selected.
     too: bool,
     hovered: Option<NodePath>,
+    /// The nodes that can be seen.
+    seen: Vec<NodeRef>,
     /// What was dragged, and what it was dropped on.
     dropped: Option<(NodePath, NodePath)>,
     /// What the menu does with all selected nodes.
@@ -47,6 +59,7 @@ pub fn show(modeler: &mut Modeler, ui: &mut Ui) {
         }
     });
     modeler.hovered = done.hovered;
+    modeler.show_parts(done.seen, ui.ctx());
     match done.selected {
         Some(path) if done.too => modeler.select_too(path),
         Some(path) => modeler.select(Some(path)),
@@ -80,6 +93,7 @@ fn show_dragged(modeler: &Modeler, ui: &Ui) {
 
 /// All nodes that show, line by line. Trees may be deep, and lines in lines in lines would need much of the stack.
 fn lines(modeler: &Modeler, ui: &mut Ui, root: &NodeRef, done: &mut Done) {
+    ui.spacing_mut().indent = INDENT;
     let mut waiting = vec![(root.clone(), NodePath::default())];
     while let Some((node, path)) = waiting.pop() {
         let is_open = ui.horizontal(|ui| line(modeler, ui, &node, &path, done)).inner;
@@ -126,7 +140,8 @@ fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &m
         let (rect, _) = ui.allocate_exact_size(egui::vec2(4.0, 16.0), Sense::hover());
         ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
     }
-    let button = ui.add(egui::Button::selectable(is_selected, text).sense(Sense::click_and_drag()));
+    let picture = picture(modeler, ui, node, done);
+    let button = ui.add(egui::Button::selectable(is_selected, text).sense(Sense::click_and_drag())) | picture;
     // What is under the pointer in the view lights up here.
     if modeler.pointed() == Some(path) {
         let light = egui::Stroke::new(2.0, theme::pointed(ui.visuals().dark_mode));
@@ -146,6 +161,20 @@ fn row(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, path: &NodePath, done: &m
     }
     dropped(path, &button, ui, done);
     button.context_menu(|ui| done.act = edit::parts(modeler, ui));
+}
+
+/// What the node makes by itself; it can be tapped and dragged as its name can.
+fn picture(modeler: &Modeler, ui: &mut Ui, node: &NodeRef, done: &mut Done) -> Response {
+    // The keyboard stops at the name alone.
+    let (rect, response) = ui.allocate_exact_size(PICTURE, Sense::CLICK | Sense::DRAG);
+    if ui.is_rect_visible(rect) && done.seen.len() < MOST_PICTURES {
+        done.seen.push(node.clone());
+        if let Some(texture) = modeler.parts.of(node) {
+            let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+            ui.painter().image(texture.id(), rect, whole, Color32::WHITE);
+        }
+    }
+    response
 }
 
 /// Takes in a node that is dropped on this one.
@@ -195,11 +224,20 @@ pub fn rule(operator: &Operator) -> &'static str {
 fn made(warp: &Warp) -> &'static str {
     match warp {
         Warp::Transform(_) => "Moved",
-        Warp::Affine(_) => "Skewed",
+        Warp::Affine(map) => match is_mirror(map) {
+            true => "Mirrored",
+            false => "Skewed",
+        },
         Warp::Taper(_) => "Tapered",
         Warp::Twist(_) => "Twisted",
         Warp::Bend(_) => "Bent",
     }
+}
+
+/// Whether a map turns left into right.
+fn is_mirror(map: &AffineMap) -> bool {
+    let [x, y, z] = map.rows.map(|[x, y, z, _]| Vec3::new(x, y, z));
+    x.dot(y.cross(z)) < 0.0
 }
 
 /// What the user reads for a node: its name, else what it is. A warp is what it makes of the part below.
@@ -239,5 +277,7 @@ mod tests {
         let both = union([ball(), ball()]).translate([1., 0., 0.]).translate([0., 0., 9.]);
         assert_eq!(title(&both), "Moved together");
         assert_eq!(title(&both.named("Pair")), "Pair");
+        let mirrored = crate::placing::mirror(&ball().into(), glam::Affine3A::IDENTITY);
+        assert_eq!(title(&mirrored), "Mirrored point");
     }
 }
