@@ -10,9 +10,6 @@ use rayon::prelude::*;
 /// Places that are looked at together.
 const TOGETHER: usize = 256;
 
-/// How often the place where an edge changes its owner is halved: to a 32nd of the edge.
-const HALVINGS: usize = 5;
-
 /// How far seams lie above the surface, in cells, so that it does not hide them.
 const ABOVE: f32 = 0.06;
 
@@ -41,11 +38,13 @@ pub struct Ground<'a> {
     pub triangles: &'a [[u32; 3]],
     /// The size of its cells, mm.
     pub cell: f32,
+    /// How often the place where an edge changes its owner is halved: 5 times to a 32nd of the edge.
+    pub halvings: usize,
 }
 
 /// The seams on a surface of this tree; `None` if it was cancelled.
 ///
-/// **Cost:** the owners of all corners, and six more for each edge that a seam crosses.
+/// **Cost:** the owners of all corners, and one more for each halving of each edge that a seam crosses.
 pub fn seams(root: &NodeRef, owners: &Owners, ground: Ground, cancel: &Cancel) -> Option<Vec<Line>> {
     if owners.parts().len() < 2 {
         return Some(Vec::new());
@@ -114,7 +113,7 @@ fn crossings(owners: &Owners, of: &[u32], edges: &[[u32; 2]], ground: Ground, ca
     };
     // The owners are asked for on the surface itself.
     let mut ways: Vec<[f32; 2]> = vec![[0.0, 1.0]; edges.len()];
-    for _ in 0..HALVINGS {
+    for _ in 0..ground.halvings {
         let middles: Vec<Vec3> = edges
             .iter()
             .zip(&ways)
@@ -155,7 +154,7 @@ mod tests {
         let surface = Surface::build(&Tree::new(root), cell, &Options::default()).expect("not cancelled");
         let mesh = surface.mesh();
         let (positions, normals, triangles) = (&mesh.positions, &surface.normals(), &mesh.triangles);
-        let ground = Ground { positions, normals, triangles, cell: cell.mm() };
+        let ground = Ground { positions, normals, triangles, cell: cell.mm(), halvings: 5 };
         seams(root, &Owners::new(root, &BakeStore::new()), ground, &Cancel::new()).expect("not cancelled")
     }
 

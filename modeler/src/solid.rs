@@ -36,6 +36,10 @@ const REST: Duration = Duration::from_millis(150);
 /// move with what is dragged: twice what the seams of most examples take, a fifth of what those of the forest do.
 const WITH_SOLID: Duration = Duration::from_millis(20);
 
+/// How often edges are halved in looking for seams, of what is shown at once, and of what is shown when there is time: a
+/// figure of 100 blended nodes has a seam in every third cell, and all halvings together take longer than its surface.
+const HALVINGS: [usize; 2] = [2, 5];
+
 /// How long seams fade whose own take longer.
 const FADES: Duration = Duration::from_millis(300);
 
@@ -410,6 +414,7 @@ fn sew(
         normals: &normals,
         triangles: &mesh.triangles,
         cell: surface.cell().mm(),
+        halvings: HALVINGS[usize::from(is_fine)],
     };
     let owners = Owners::new(&question.root, bakes);
     let lines = seams(&question.root, &owners, ground, cancel)?;
