@@ -123,7 +123,11 @@ impl Desk for Files {
             attachments.materials = meshed.materials(&scene.root, format, moved, job)?;
             meshing::write_mesh_as(path, path, &meshed.mesh, format, &attachments, job)?;
             let triangles = output::counted(meshed.mesh.triangles.len(), "triangle");
-            Ok(format!("{}: {triangles}, cells of {} mm", path.display(), output::short(meshed.cell_mm)))
+            Ok(format!(
+                "Exported {}: {triangles}, cells of {} mm",
+                path.display(),
+                output::short(meshed.cell_mm)
+            ))
         })
     }
 

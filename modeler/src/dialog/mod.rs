@@ -116,9 +116,13 @@ impl Dialog {
     }
 }
 
-/// A name in the folder where the user worked last.
+/// A name in the folder where the user worked last, else in that of the program, so that it is clear where it is.
 fn in_folder(modeler: &Modeler, name: &str) -> String {
-    modeler.last_folder().map_or(name.into(), |folder| folder.join(name).display().to_string())
+    let path = match modeler.last_folder() {
+        Some(folder) => folder.join(name),
+        None => std::path::absolute(name).unwrap_or_else(|_| name.into()),
+    };
+    path.display().to_string()
 }
 
 /// Shows the question and does what is answered.
