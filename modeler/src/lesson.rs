@@ -2,6 +2,7 @@
 
 use crate::dialog::Dialog;
 use crate::modeler::Modeler;
+use crate::theme::card_width;
 use blobtree::{NodeRef, Operator, Shape};
 use egui::{Align2, Area, Frame, Id, Order, Rect, RichText, Ui, vec2};
 
@@ -109,7 +110,7 @@ pub fn show(modeler: &mut Modeler, ui: &Ui, view: Rect) {
     let area = Area::new(Id::unique("lesson")).order(Order::Middle).pivot(pivot).fixed_pos(corner);
     area.show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-            ui.set_max_width(WIDTH.min(view.width() - 60.0));
+            ui.set_max_width(card_width(WIDTH, view.width() - 60.0));
             match modeler.lesson {
                 Some(lesson) => card(modeler, ui, lesson),
                 None => offer(modeler, ui),

@@ -1,5 +1,6 @@
 //! What the user is told: a few lines that go away by themselves, and warnings that stay until they are read.
 
+use crate::theme::card_width;
 use egui::{Align2, Area, Color32, Frame, Id, Label, Order, RichText, Ui};
 
 /// How long a line stays, seconds.
@@ -68,7 +69,8 @@ impl Notices {
                     if line.is_warning { Color32::from_rgb(150, 50, 40) } else { Color32::from_gray(50) };
                 let frame = Frame::new().fill(fill).corner_radius(6.0).inner_margin(8.0).outer_margin(3.0);
                 frame.show(ui, |ui| {
-                    ui.set_max_width(WIDEST.min(ui.ctx().content_rect().width() - MARGINS));
+                    let room = ui.ctx().content_rect().width() - MARGINS;
+                    ui.set_max_width(card_width(WIDEST, room));
                     ui.add(Label::new(RichText::new(&line.text).color(Color32::WHITE)).wrap());
                     if line.is_warning && ui.button("I see").clicked() {
                         read = Some(i);

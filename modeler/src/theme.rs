@@ -1,4 +1,4 @@
-//! Colours in light and dark, so that everything can be read.
+//! Colours in light and dark, and room for words, so that everything can be read.
 
 use egui::{Color32, Context, Theme, Visuals};
 
@@ -32,6 +32,12 @@ pub fn pointed(dark: bool) -> Color32 {
 /// Behind the model.
 pub fn background(dark: bool) -> [u8; 3] {
     if dark { [34, 36, 40] } else { [236, 238, 241] }
+}
+
+/// How wide a card is that would like to be so wide where there is so much room, points: never so narrow that no word fits,
+/// even if the window is.
+pub(crate) fn card_width(liked: f32, room: f32) -> f32 {
+    liked.min(room).max(100.0)
 }
 
 #[cfg(test)]

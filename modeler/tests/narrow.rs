@@ -106,3 +106,22 @@ fn the_bar_is_whole_in_windows_of_all_sizes_and_panels_come_and_go() {
         assert_eq!(narrow(&screen) > before, had_panels, "{size:?}");
     }
 }
+
+#[test]
+fn windows_too_small_for_anything_are_no_mistake() {
+    let mut screen = screen_with_snowman();
+    screen.key_press(egui::Key::L);
+    settle(&mut screen);
+    assert!(screen.query_by_label("Field lens").is_some());
+    for side in [700.0, 120.0, 40.0, 5.0, 1.0, 700.0] {
+        screen.set_size(vec2(side, 0.7 * side));
+        settle(&mut screen);
+        screen.state_mut().notices.warn("A long sentence that has room on hardly any of these screens.");
+        settle(&mut screen);
+    }
+    assert!(screen.query_by_label("Field lens").is_some());
+    for side in [700.0, 40.0, 1.0] {
+        let screen = screen_of_size(vec2(side, side), false);
+        assert!(side < 700.0 || screen.query_by_label("An empty page").is_some());
+    }
+}

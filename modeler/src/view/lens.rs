@@ -4,6 +4,7 @@ use super::hand::Hold;
 use super::{in_view, on_screen};
 use crate::lens::{Explained, Facing, Lens};
 use crate::modeler::Modeler;
+use crate::theme::card_width;
 use blobtree::{FieldPicture, ISO};
 use egui::epaint::{Mesh, Vertex};
 use egui::{
@@ -103,7 +104,7 @@ fn card(modeler: &mut Modeler, ui: &Ui, response: &Response) {
     let area = Area::new(Id::unique("lens")).order(Order::Middle).pivot(pivot).fixed_pos(corner);
     area.show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-            ui.set_width(WIDTH.min(response.rect.width() - 50.0));
+            ui.set_width(card_width(WIDTH, response.rect.width() - 50.0));
             ui.horizontal(|ui| {
                 ui.strong("Field lens");
                 let end = Layout::right_to_left(Align::Center);
