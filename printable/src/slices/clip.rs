@@ -122,7 +122,7 @@ fn thinned_ring(ring: &[Point], off: f64) -> Vec<Point> {
 }
 
 /// Whether a point is within `off` of the straight way from one to another.
-fn is_near_way(p: Point, from: Point, to: Point, off: f64) -> bool {
+pub(crate) fn is_near_way(p: Point, from: Point, to: Point, off: f64) -> bool {
     let vector =
         |a: Point, b: Point| DVec2::new(f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y));
     let (along, at) = (vector(from, to), vector(from, p));

@@ -9,6 +9,7 @@ use super::rect::Rect;
 use super::watch::Watch;
 use crate::LayerHeight;
 use mesh::Mesh;
+use std::collections::HashMap;
 
 /// A closed outline with the solid on its left; outlines of a layer may cross.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +37,9 @@ impl Outlines {
         let bounds = mesh.bounds();
         let planes = Planes::new(&bounds, height, Bottom::LowestPoint)?;
         let grid = Grid::over(&bounds)?;
-        let layers = cut(mesh, &planes.heights, grid, watch, |_, loops| outlines_of(loops.closed))?;
+        let layers = cut(mesh, &planes.heights, grid, watch, |_, loops| {
+            outlines_of(loops.closed.into_iter().flat_map(apart))
+        })?;
         Ok(Self { planes, grid, layers })
     }
 
@@ -46,7 +49,9 @@ impl Outlines {
     pub(crate) fn renew(&mut self, mesh: &Mesh, layers: &[usize], watch: &Watch) -> Result<(), SliceError> {
         super::check(mesh)?;
         let heights: Vec<f64> = layers.iter().map(|layer| self.planes.heights[*layer]).collect();
-        let cut = cut(mesh, &heights, self.grid, watch, |_, loops| outlines_of(loops.closed))?;
+        let cut = cut(mesh, &heights, self.grid, watch, |_, loops| {
+            outlines_of(loops.closed.into_iter().flat_map(apart))
+        })?;
         for (layer, new) in layers.iter().zip(cut) {
             self.layers[*layer] = new;
         }
@@ -57,6 +62,32 @@ impl Outlines {
 fn outlines_of(rings: impl IntoIterator<Item = Vec<Point>>) -> Vec<Outline> {
     let outline = |ring: Vec<Point>| Some(Outline { rect: Rect::of_points(&ring)?, ring });
     rings.into_iter().filter_map(outline).collect()
+}
+
+/// A ring as rings that go through no place twice: what hangs together at a place only is not connected.
+pub(super) fn apart(ring: Vec<Point>) -> Vec<Vec<Point>> {
+    let mut sorted: Vec<[i32; 2]> = ring.iter().map(|p| [p.x, p.y]).collect();
+    sorted.sort_unstable();
+    if sorted.windows(2).all(|pair| pair[0] != pair[1]) {
+        return vec![ring];
+    }
+    let mut apart = Vec::new();
+    let mut way: Vec<Point> = Vec::new();
+    let mut places = HashMap::new();
+    for p in ring {
+        if let Some(&first) = places.get(&[p.x, p.y]) {
+            let between = way.split_off(first);
+            for p in &between {
+                places.remove(&[p.x, p.y]);
+            }
+            apart.push(between);
+        }
+        places.insert([p.x, p.y], way.len());
+        way.push(p);
+    }
+    apart.push(way);
+    apart.retain(|ring| ring.len() > 2);
+    apart
 }
 
 impl Outline {

@@ -1,7 +1,7 @@
 //! Slices against closed forms, and what meshes can have wrong.
 
-use super::clip::pairs;
-use super::outline::Outline;
+use super::clip::{doubled_area, pairs};
+use super::outline::{Outline, apart};
 use super::rect::Rect;
 use super::*;
 use glam::{Quat, Vec3};
@@ -274,4 +274,33 @@ fn what_is_clipped_to_a_box_winds_around_its_places_as_before() {
             }
         }
     }
+}
+
+#[test]
+fn rings_that_touch_themselves_come_apart_and_wind_as_before() {
+    let ring = |places: &[[i32; 2]]| places.iter().map(|p| Point::new(p[0], p[1])).collect::<Vec<_>>();
+    // A square with a speck at one corner and another within it at a second, and a corner said twice.
+    let whole = ring(&[
+        [0, 0],
+        [900, 0],
+        [900, 0],
+        [900, 900],
+        [950, 900],
+        [950, 950],
+        [900, 950],
+        [900, 900],
+        [0, 900],
+        [0, 0],
+        [50, 80],
+        [80, 50],
+    ]);
+    let rings = apart(whole.clone());
+    assert_eq!(rings.iter().map(Vec::len).sum::<usize>(), 4 + 4 + 3);
+    let doubled: Vec<i128> = rings.iter().map(|ring| doubled_area(ring)).collect();
+    assert_eq!(doubled.iter().sum::<i128>(), doubled_area(&whole));
+    let mut sizes = doubled.clone();
+    sizes.sort_unstable();
+    assert_eq!(sizes, [-3900, 5000, 1_620_000]);
+    let simple = ring(&[[0, 0], [9, 0], [9, 9]]);
+    assert_eq!(apart(simple.clone()), [simple]);
 }

@@ -10,8 +10,11 @@ use glam::DVec2;
 /// Sides of each outline beside which it is looked whether both layers are solid there.
 const PROBES: usize = 16;
 
-/// How far beside an outline that is, in steps of the grid.
-const BESIDE: f64 = 64.0;
+/// How far beside an outline that is, in steps of the grid: what both share has to be as wide as that.
+const BESIDE: f64 = 16_384.0;
+
+/// What is no longer than so many reaches is looked at exactly: a speck may touch what is below by less than a probe sees.
+const SPECK: f64 = 4.0;
 
 /// Room around an outline, in steps of the grid, that shows where regions end.
 const ROOM: i32 = 4;
@@ -30,8 +33,11 @@ impl Pair<'_> {
         islands
     }
 
-    /// Whether a probe finds both layers solid in the region of this outline.
+    /// Whether this is no speck, and a probe finds both layers solid in its region.
     fn is_surely_carried(&self, outline: &Outline) -> bool {
+        if outline.rect.diagonal() < SPECK * f64::from(self.reach.steps()) {
+            return false;
+        }
         let inner = self.layer.iter().filter(|other| outline.rect.encloses(&other.rect) && other.is_outer());
         let inner: Vec<&Outline> = inner.collect();
         let is_shared = |p: Point| {

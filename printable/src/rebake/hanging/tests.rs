@@ -143,3 +143,11 @@ fn following_a_change_finds_what_a_fresh_look_finds() {
         assert_eq!(found(&kept, &after), found(&look(&after), &after));
     }
 }
+
+#[test]
+fn a_speck_that_touches_what_is_below_by_a_corner_is_an_island() {
+    let touching = 1e-4;
+    let layer = vec![square(0.0, 0.0, 1.9), square(2.03 - touching, 2.03 - touching, 0.03)];
+    let found = pieces(&[vec![square(0.0, 0.0, 2.0)], layer]);
+    assert!((area(&found, true) - 0.0036).abs() < 1e-6, "{}", area(&found, true));
+}

@@ -1,7 +1,7 @@
 //! What one layer lacks of the one below, in squares of the plane.
 
 use super::{Pair, Reach, is_rounding};
-use crate::slices::clip::{Clipper, Region, area, doubled_area, grown, perimeter};
+use crate::slices::clip::{Clipper, Region, area, doubled_area, grown, is_near_way, pairs, perimeter};
 use crate::slices::grid::{Grid, Point};
 use crate::slices::outline::{Outline, clipped, rings};
 use crate::slices::rect::Rect;
@@ -11,6 +11,9 @@ const WIDTH: f64 = 8.0;
 
 /// Steps of the grid that tiles look further than their reach, as outlines are cut and grown to whole steps.
 const MARGIN: i32 = 8;
+
+/// How near is as good as touching, in steps of the grid.
+const TOUCHING: f64 = 2.0;
 
 /// A square of the plane; ordered by rows, then columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -106,27 +109,39 @@ impl Local<'_> {
         let [layer, below] = [self.layer, self.below].map(rings);
         let gone: Vec<&[Point]> = gone.into_iter().flatten().map(Vec::as_slice).collect();
         let left = (!gone.is_empty()).then(|| clipper.difference(&below[..], &gone[..]));
-        let mut beyond = match &left {
-            Some(left) => clipper.difference(&layer[..], &left[..]),
-            None => clipper.difference(&layer[..], &below[..]),
-        };
+        let carrying = left.as_ref().map_or(below, |left| left.iter().flatten().map(Vec::as_slice).collect());
+        let mut beyond = clipper.difference(&layer[..], &carrying[..]);
         beyond.retain(|region| !is_rounding(area(region), perimeter(region)));
         // What touches the layer below, and is nowhere longer than its reach, is within reach; but on the rim of the
-        // tile, it may go on.
-        beyond.retain(|region| {
+        // tile, it may go on. What does not touch is an island: outlines that cross themselves hide some from probes.
+        let is_short = |region: &Region| {
             let rect = Rect::around([region]);
-            rect.is_some_and(|rect| rect.diagonal() > grid.steps(mm) || !self.rect.encloses(&rect))
+            rect.is_some_and(|rect| rect.diagonal() <= grid.steps(mm) && self.rect.encloses(&rect))
+        };
+        let mut specks = Vec::new();
+        beyond.retain(|region| {
+            if is_short(region) && !touches(region, &carrying) {
+                specks.push(region.clone());
+            }
+            !is_short(region)
         });
-        let Some(rect) = Rect::around(&beyond) else { return beyond };
-        let mut holding = left.unwrap_or_else(|| clipper.fill(&below[..]));
+        let Some(rect) = Rect::around(&beyond) else { return specks };
+        let mut holding = left.clone().unwrap_or_else(|| clipper.fill(&carrying[..]));
         holding.retain(|region| is_near(&region, &rect, self.pair.reach.steps()));
-        if holding.is_empty() {
-            return beyond;
+        if !holding.is_empty() {
+            beyond = clipper.difference(&beyond[..], &grown(&holding, mm, grid.step)[..]);
+            beyond.retain(|region| !is_rounding(area(region), perimeter(region)));
         }
-        let mut hanging = clipper.difference(&beyond[..], &grown(&holding, mm, grid.step)[..]);
-        hanging.retain(|region| !is_rounding(area(region), perimeter(region)));
-        hanging
+        beyond.append(&mut specks);
+        beyond
     }
+}
+
+/// Whether a corner of a region is on one of these rings, but for rounding.
+fn touches(region: &Region, rings: &[&[Point]]) -> bool {
+    let corners = region.iter().flatten();
+    let mut sides = rings.iter().flat_map(|ring| pairs(ring));
+    sides.any(|(a, b)| corners.clone().any(|p| is_near_way(*p, a, b, TOUCHING)))
 }
 
 /// Whether all of a box is inside an outline that was cut to it.
