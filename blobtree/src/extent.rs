@@ -45,12 +45,12 @@ impl Search {
         let bound = sampler.enter(region);
         if bound.hi >= ISO {
             let size = region.size();
-            if bound.lo >= ISO || size.max_element() <= self.finest || self.left == 0 {
-                self.known = self.known.union(&region);
-            } else {
-                for half in halves(region) {
-                    self.visit(sampler, half);
+            let is_small = size.max_element() <= self.finest || self.left == 0;
+            match halves(region) {
+                Some(halves) if bound.lo < ISO && !is_small => {
+                    halves.into_iter().for_each(|half| self.visit(sampler, half));
                 }
+                _ => self.known = self.known.union(&region),
             }
         }
         sampler.leave();
@@ -77,14 +77,14 @@ fn without(region: Aabb, known: Aabb) -> Aabb {
     left
 }
 
-/// A region cut in two across its longest side.
-fn halves(region: Aabb) -> [Aabb; 2] {
+/// A region cut in two across its longest side; none where there is no number between its ends.
+fn halves(region: Aabb) -> Option<[Aabb; 2]> {
     let size = region.size();
     let axis = (0..3).fold(0, |longest, axis| if size[axis] > size[longest] { axis } else { longest });
     let (mut low, mut high) = (region, region);
     low.max[axis] = region.center()[axis];
     high.min[axis] = low.max[axis];
-    [low, high]
+    (region.min[axis] < low.max[axis] && low.max[axis] < region.max[axis]).then_some([low, high])
 }
 
 /// The box of the points of a coarse lattice that are inside: a beginning.
@@ -136,6 +136,18 @@ mod tests {
         let exact = Aabb { min: Vec3::new(-33.7, -34.3, 0.0), max: Vec3::new(36.3, 35.7, 52.0) };
         assert!(search.known.contains(exact.min) && search.known.contains(exact.max), "{:?}", search.known);
         assert!(exact.grown(0.5).contains(search.known.min) && exact.grown(0.5).contains(search.known.max));
+    }
+
+    #[test]
+    fn where_numbers_lie_far_apart_the_search_ends() {
+        for far in [1e5, 1e6, 1e7, 3e7, 1e8, 1e9, 1e12] {
+            let shape = union([point([far, -far, 5.0], 5.0), point([far, 9.0 - far, 5.0], 5.0)]);
+            let tree = Tree::new(&shape);
+            let mut search = Search { known: Aabb::EMPTY, finest: 1e-3, left: PATIENCE };
+            search.visit(&mut *tree.sampler(), tree.support());
+            let found = solid_box(&tree);
+            assert!(found.is_empty() || found.contains(found.center()), "{far}: {found:?}");
+        }
     }
 
     #[test]
