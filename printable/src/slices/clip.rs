@@ -23,6 +23,11 @@ const ARC_ERROR_MM: f64 = 0.000_3;
 /// short sides of outlines, that takes about half the time.
 const MANY: usize = 2_000;
 
+/// Rings of points, in any containers.
+pub(crate) trait Rings: IntShapeResource<i32> {}
+
+impl<R: IntShapeResource<i32> + ?Sized> Rings for R {}
+
 /// A clipper whose memory is used again and again.
 pub(crate) struct Clipper {
     overlay: Overlay<i32>,
@@ -35,34 +40,36 @@ impl Clipper {
     }
 
     /// The regions around which `loops` wind a positive number of times.
-    pub(crate) fn fill<L: IntShapeResource<i32> + ?Sized>(&mut self, loops: &L) -> Vec<Region> {
+    pub(crate) fn fill(&mut self, loops: &(impl Rings + ?Sized)) -> Vec<Region> {
         self.clear();
         self.add(loops, ShapeType::Subject);
         self.combined(OverlayRule::Subject)
     }
 
     /// What is in `a` and not in `b`; both are regions, or loops as for [`Self::fill`].
-    pub(crate) fn difference<A, B>(&mut self, a: &A, b: &B) -> Vec<Region>
-    where
-        A: IntShapeResource<i32> + ?Sized,
-        B: IntShapeResource<i32> + ?Sized,
-    {
-        self.clear();
-        self.add(a, ShapeType::Subject);
-        self.add(b, ShapeType::Clip);
-        self.combined(OverlayRule::Difference)
+    pub(crate) fn difference(&mut self, a: &(impl Rings + ?Sized), b: &(impl Rings + ?Sized)) -> Vec<Region> {
+        self.combine(a, b, OverlayRule::Difference)
     }
 
     /// What is in both; regions or loops.
-    pub(crate) fn intersection<A, B>(&mut self, a: &A, b: &B) -> Vec<Region>
-    where
-        A: IntShapeResource<i32> + ?Sized,
-        B: IntShapeResource<i32> + ?Sized,
-    {
+    pub(crate) fn intersection(
+        &mut self,
+        a: &(impl Rings + ?Sized),
+        b: &(impl Rings + ?Sized),
+    ) -> Vec<Region> {
+        self.combine(a, b, OverlayRule::Intersect)
+    }
+
+    fn combine(
+        &mut self,
+        a: &(impl Rings + ?Sized),
+        b: &(impl Rings + ?Sized),
+        rule: OverlayRule,
+    ) -> Vec<Region> {
         self.clear();
         self.add(a, ShapeType::Subject);
         self.add(b, ShapeType::Clip);
-        self.combined(OverlayRule::Intersect)
+        self.combined(rule)
     }
 
     fn clear(&mut self) {
@@ -70,7 +77,7 @@ impl Clipper {
         self.points = 0;
     }
 
-    fn add<R: IntShapeResource<i32> + ?Sized>(&mut self, rings: &R, role: ShapeType) {
+    fn add(&mut self, rings: &(impl Rings + ?Sized), role: ShapeType) {
         self.points += rings.iter_paths().map(<[Point]>::len).sum::<usize>();
         self.overlay.add_source(rings, role);
     }

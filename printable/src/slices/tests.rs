@@ -296,9 +296,8 @@ fn rings_that_touch_themselves_come_apart_and_wind_as_before() {
     ]);
     let rings = apart(whole.clone());
     assert_eq!(rings.iter().map(Vec::len).sum::<usize>(), 4 + 4 + 3);
-    let doubled: Vec<i128> = rings.iter().map(|ring| doubled_area(ring)).collect();
-    assert_eq!(doubled.iter().sum::<i128>(), doubled_area(&whole));
-    let mut sizes = doubled.clone();
+    let mut sizes: Vec<i128> = rings.iter().map(|ring| doubled_area(ring)).collect();
+    assert_eq!(sizes.iter().sum::<i128>(), doubled_area(&whole));
     sizes.sort_unstable();
     assert_eq!(sizes, [-3900, 5000, 1_620_000]);
     let simple = ring(&[[0, 0], [9, 0], [9, 9]]);
