@@ -393,22 +393,31 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_drag_that_never_rests_is_followed() {
-        let at = |x: f32| -> NodeRef { union([point([x, 0., 10.], 10.), point([0., 0., 30.], 8.)]).into() };
-        let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
+    /// Asks for a new place every millisecond, which is less than any solid takes, until five solids are as they should be.
+    fn drag(
+        maker: &mut SolidMaker,
+        at: impl Fn(f32) -> NodeRef,
+        is_good: impl Fn(&SolidMaker, &Solid) -> bool,
+    ) {
         let until = Instant::now() + Duration::from_secs(60);
-        let mut shown = 0;
-        // A new place every millisecond, which is less than any solid takes.
-        for step in 0_u16.. {
-            assert!(Instant::now() < until, "{shown} solids in {step} steps");
+        let mut good = 0;
+        for step in 1_u16.. {
+            assert!(Instant::now() < until, "{good} solids in {step} steps");
             maker.ask(&at(0.01 * f32::from(step)), true, Asking::Drag, Instant::now());
-            shown += usize::from(maker.ready().is_some());
-            if shown == 5 {
+            let solid = maker.ready();
+            good += usize::from(solid.is_some_and(|solid| is_good(maker, &solid)));
+            if good == 5 {
                 break;
             }
             std::thread::sleep(Duration::from_millis(1));
         }
+    }
+
+    #[test]
+    fn a_drag_that_never_rests_is_followed() {
+        let at = |x: f32| -> NodeRef { union([point([x, 0., 10.], 10.), point([0., 0., 30.], 8.)]).into() };
+        let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
+        drag(&mut maker, at, |_, _| true);
     }
 
     #[test]
@@ -417,20 +426,16 @@ mod tests {
         let mut maker = SolidMaker::start(Arc::new(|| ()), None).expect("a thread");
         let version = maker.ask(&two(12.0), true, Asking::Other, Instant::now());
         fine(&mut maker, version);
-        let until = Instant::now() + Duration::from_secs(60);
-        let (mut step, mut seen) = (0_u16, 0);
-        while seen < 5 {
-            assert!(Instant::now() < until, "{seen} solids with seams in {step} steps");
-            step += 1;
-            maker.ask(&two(12.0 + 0.01 * f32::from(step)), true, Asking::Drag, Instant::now());
-            if let Some(solid) = maker.ready() {
-                let (lines, shown) = maker.seams(&solid);
+        drag(
+            &mut maker,
+            |by| two(12.0 + by),
+            |maker, solid| {
+                let (lines, shown) = maker.seams(solid);
                 // On a busy machine they may take long once, and fade.
                 assert!(!lines.is_empty(), "{shown}");
-                seen += usize::from(shown == 1.0);
-            }
-            std::thread::sleep(Duration::from_millis(1));
-        }
+                shown == 1.0
+            },
+        );
         // Seams of another solid are gone after a while.
         let version = maker.ask(&two(20.0), false, Asking::Drag, Instant::now());
         let solid = fine(&mut maker, version);

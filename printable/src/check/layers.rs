@@ -2,7 +2,7 @@
 
 use super::CheckSettings;
 use super::excess::{Held, farthest};
-use crate::slices::clip::{Clipper, Region, area, grown, perimeter, total};
+use crate::slices::clip::{Clipper, ROUNDING, Region, area, grown, is_rounding, perimeter, total};
 use crate::slices::rect::Rect;
 use crate::slices::{Layer, SliceError, Slices, Tally, Watch};
 use glam::DVec3;
@@ -12,8 +12,6 @@ use rayon::prelude::*;
 const MOST_SPOTS: usize = 20;
 /// Hanging places smaller than this are counted but not listed, mm².
 const SMALLEST_SPOT: f64 = 1e-4;
-/// What is narrower than this many steps of the grid, on average, comes from rounding.
-const ROUNDING: f64 = 4.0;
 
 /// What one layer needs of the one below.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -204,9 +202,4 @@ impl Judge<'_> {
     fn square_mm(&self, regions: &[Region]) -> f64 {
         self.slices.grid.square_mm(total(regions))
     }
-}
-
-/// Whether an area, in square steps, is no wider along a rim of so many steps than rounding explains.
-fn is_rounding(area: f64, rim: f64) -> bool {
-    2.0 * area <= ROUNDING * rim
 }

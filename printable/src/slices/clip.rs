@@ -28,6 +28,9 @@ pub(crate) trait Rings: IntShapeResource<i32> {}
 
 impl<R: IntShapeResource<i32> + ?Sized> Rings for R {}
 
+/// What is narrower than this many steps, on average, comes from rounding.
+pub(crate) const ROUNDING: f64 = 4.0;
+
 /// A clipper whose memory is used again and again.
 pub(crate) struct Clipper {
     overlay: Overlay<i32>,
@@ -107,10 +110,10 @@ const MOST_LEFT_OUT: usize = 64;
 /// The regions with no more points than their outlines need: what is left out lies within the error of arcs.
 ///
 /// Outlines that are grown, cut and grown again would otherwise gather the arcs of all their pasts.
-pub(crate) fn thinned(regions: &[Region], step: f64) -> Vec<Region> {
+pub(crate) fn thinned<'a>(regions: impl IntoIterator<Item = &'a Region>, step: f64) -> Vec<Region> {
     let off = ARC_ERROR_MM / step;
     let thin = |region: &Region| region.iter().map(|ring| thinned_ring(ring, off)).collect();
-    regions.iter().map(thin).collect()
+    regions.into_iter().map(thin).collect()
 }
 
 /// A ring without the points that are within `off` steps of the straight way between those kept; at least three.
@@ -157,6 +160,11 @@ pub(crate) fn doubled_area(ring: &[Point]) -> i128 {
 /// Length of all outlines, in steps.
 pub(crate) fn perimeter(region: &Region) -> f64 {
     region.iter().flat_map(|ring| pairs(ring)).map(|(a, b)| distance(a, b)).sum()
+}
+
+/// Whether an area, in square steps, is no wider along a rim of so many steps than rounding explains.
+pub(crate) fn is_rounding(area: f64, rim: f64) -> bool {
+    2.0 * area <= ROUNDING * rim
 }
 
 /// The sides of a ring.

@@ -1,7 +1,7 @@
 //! Regions that share no area with the layer below.
 
-use super::{Pair, is_rounding};
-use crate::slices::clip::{Clipper, Region, pairs, perimeter, total};
+use super::Pair;
+use crate::slices::clip::{Clipper, Region, is_rounding, pairs, perimeter, total};
 use crate::slices::grid::Point;
 use crate::slices::outline::{Outline, clipped, is_in, rings};
 use crate::slices::rect::Rect;

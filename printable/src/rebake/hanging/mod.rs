@@ -20,9 +20,6 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use tile::Tiling;
 
-/// What is narrower than this many steps of the grid, on average, comes from rounding.
-const ROUNDING: f64 = 4.0;
-
 /// What every layer lacks.
 #[derive(Debug)]
 pub(super) struct Hanging {
@@ -137,9 +134,7 @@ impl Hanging {
             // Where something goes, the layer above lacks more.
             let lacks = self.without(outlines, layer, &gone, &mut clipper);
             let pieces = lacks.regions(&mut clipper);
-            gone.clear();
-            gone.extend(pieces.iter().map(|(region, _)| region.clone()));
-            gone = thinned(&gone, self.reach.grid.step);
+            gone = thinned(pieces.iter().map(|(region, _)| region), self.reach.grid.step);
             found.extend(pieces.into_iter().map(|(region, island)| (layer, region, island)));
         }
         let piece = |(layer, region, island): &(usize, Region, bool)| {
@@ -205,11 +200,6 @@ impl Lacks {
         let islands = self.islands.iter().map(|region| (region.clone(), true));
         islands.chain(others.into_iter().map(|region| (region, false))).collect()
     }
-}
-
-/// Whether an area, in square steps, is no wider along a rim of so many steps than rounding explains.
-fn is_rounding(area: f64, rim: f64) -> bool {
-    2.0 * area <= ROUNDING * rim
 }
 
 #[cfg(test)]

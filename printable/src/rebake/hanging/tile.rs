@@ -1,7 +1,9 @@
 //! What one layer lacks of the one below, in squares of the plane.
 
-use super::{Pair, Reach, is_rounding};
-use crate::slices::clip::{Clipper, Region, area, doubled_area, grown, is_near_way, pairs, perimeter};
+use super::{Pair, Reach};
+use crate::slices::clip::{
+    Clipper, Region, area, doubled_area, grown, is_near_way, is_rounding, pairs, perimeter,
+};
 use crate::slices::grid::{Grid, Point};
 use crate::slices::outline::{Outline, clipped, rings};
 use crate::slices::rect::Rect;
